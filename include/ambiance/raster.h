@@ -1,0 +1,112 @@
+/* The rasterizer: record draws into a pass, finish the pass, read the target.
+ *
+ *   amb_pass *pass = NULL;
+ *   amb_pass_begin(context, &target, &pass, error);
+ *   amb_pass_draw(pass, &draw, error);           // any number; recorded, not run
+ *   amb_pass_finish(&pass, &stats, error);       // runs every tile, playing all draws in order
+ *
+ * Rules are a GPU's: window coordinates snapped to 1/256 pixel (round half to even), int64 edge functions, pixel
+ * centres at .5, top-left rule, near clip and guard band, depth 0…1, perspective-correct varyings. Pixels do not
+ * depend on threads, tile size, lanes or which lanes share a block. */
+#ifndef AMBIANCE_RASTER_H
+#define AMBIANCE_RASTER_H
+
+#include <ambiance/context.h>
+#include <ambiance/image.h>
+#include <ambiance/vec.h>
+
+#define AMB_MAX_TARGETS 16     /* colour attachments (AOVs among them) of one pass */
+#define AMB_MAX_VARYINGS 64    /* floats a vertex */
+
+/* ---- shaders ---------------------------------------------------------------------------------------------------- */
+
+typedef struct amb_vs_in {
+    const void *uniforms;
+    i32x vertex;   /* index value (indexed draw) or running number; always valid, in dead lanes too */
+    i32x instance;
+} amb_vs_in;
+
+typedef struct amb_vs_out {
+    v4x clip;       /* D3D clip space */
+    void *varyings; /* the draw's varyings struct of f32x members, to be written */
+} amb_vs_out;
+
+typedef struct amb_fs_in {
+    const void *uniforms;
+    const void *varyings; /* as written by the vertex stage, interpolated */
+    f32x x, y;            /* pixel centre in window coordinates, y down */
+    f32x depth;           /* 0…1; for full-screen draws the far plane, 1 */
+    maskx live;           /* covered lanes that passed the early depth test; others are helpers for derivatives */
+    maskx front;          /* all lanes alike: front face */
+    int primitive;        /* running number of the triangle in its draw, before clipping */
+    int thread;           /* 0…threads-1, for per-thread scratch */
+} amb_fs_in;
+
+typedef struct amb_fs_out {
+    v4x color[AMB_MAX_TARGETS]; /* of attachments 0…; channels an attachment lacks are ignored */
+    f32x depth;                 /* in: the interpolated depth; read back only if the draw says writes_depth */
+    maskx live;                 /* in: as fs_in; clear lanes to discard */
+} amb_fs_out;
+
+typedef void (*amb_vertex_shader)(const amb_vs_in *in, amb_vs_out *out);
+typedef void (*amb_fragment_shader)(const amb_fs_in *in, amb_fs_out *out);
+
+/* ---- state ------------------------------------------------------------------------------------------------------ */
+
+typedef enum amb_cull { AMB_CULL_NONE, AMB_CULL_BACK, AMB_CULL_FRONT } amb_cull;
+typedef enum amb_compare {
+    AMB_COMPARE_DEFAULT = 0, /* LESS when the pass has depth */
+    AMB_NEVER, AMB_LESS, AMB_EQUAL, AMB_LESS_EQUAL, AMB_GREATER, AMB_NOT_EQUAL, AMB_GREATER_EQUAL, AMB_ALWAYS
+} amb_compare;
+typedef enum amb_blend {
+    AMB_BLEND_OFF,
+    AMB_BLEND_ALPHA,    /* src·a + dst·(1-a); alpha: a + dst·(1-a) */
+    AMB_BLEND_ADD,      /* src + dst */
+    AMB_BLEND_MULTIPLY, /* src · dst */
+} amb_blend;
+
+typedef struct amb_draw {
+    const char *label; /* for statistics and errors; static storage; may be NULL */
+    int lanes;         /* AMB_LANES of the file the shaders were compiled in */
+    amb_vertex_shader vertex;     /* NULL: a full-screen draw: every pixel once, no varyings, counts below ignored */
+    amb_fragment_shader fragment; /* NULL: depth only */
+    const void *uniforms; size_t uniforms_size; /* copied when recorded; pointers inside must outlive the pass */
+    int varying_floats;           /* sizeof(varyings) / sizeof(f32x), 0…AMB_MAX_VARYINGS */
+    const uint32_t *indices;      /* NULL: not indexed; must outlive the pass */
+    uint32_t count;               /* indices or vertices; a trailing partial triangle is dropped */
+    uint32_t vertex_count;        /* indices at or above it drop their triangle; 0 for non-indexed draws */
+    uint32_t instances;           /* 0 means 1 */
+    amb_cull cull;
+    bool front_clockwise;         /* as seen on the screen; default counter-clockwise is front */
+    amb_compare depth_compare;
+    bool depth_write_off;
+    bool writes_depth;            /* the fragment shader writes out->depth: late depth test */
+    amb_blend blend[AMB_MAX_TARGETS];
+    uint32_t targets_off;         /* bit i: attachment i is not written */
+} amb_draw;
+
+typedef struct amb_target {
+    amb_image *color[AMB_MAX_TARGETS]; /* all of one size; 1…4 channels each; NULL ends the list */
+    amb_image *depth;                  /* one channel; may be NULL */
+    v4 clear_color[AMB_MAX_TARGETS];
+    float clear_depth;                 /* used as it is: give 1 for the usual */
+    bool keep;                         /* true: start from the images' contents instead of the clear values */
+} amb_target;
+
+typedef struct amb_pass_stats {
+    uint64_t vertices, triangles_in, triangles_clipped, triangles_culled, triangles_binned, blocks_shaded,
+        fragments_shaded;
+} amb_pass_stats;
+
+typedef struct amb_pass amb_pass;
+
+/* The images must outlive the pass. Errors: ARGUMENT, MEMORY. */
+amb_status amb_pass_begin(const amb_context *context, const amb_target *target, amb_pass **out, amb_error *error);
+/* Errors: ARGUMENT (naming the field), ISA (lanes differ from the context's), MEMORY. */
+amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error);
+/* Runs, frees and nulls, also on error. stats may be NULL. Errors: MEMORY. */
+amb_status amb_pass_finish(amb_pass **pass, amb_pass_stats *stats, amb_error *error);
+/* Frees without running. */
+void amb_pass_close(amb_pass **pass);
+
+#endif

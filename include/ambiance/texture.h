@@ -1,0 +1,87 @@
+/* Textures and samplers. A texture is immutable once made; sampling may be called from any thread.
+ *
+ * Sampling follows the GL/D3D formulas (texel centres at .5, LOD from screen derivatives), with weights in full float
+ * precision where a GPU has 8 bits. The lanes form is compiled once per instruction set. NaN or infinite coordinates
+ * sample coordinate 0: never out of bounds. */
+#ifndef AMBIANCE_TEXTURE_H
+#define AMBIANCE_TEXTURE_H
+
+#include <ambiance/image.h>
+#include <ambiance/vec.h>
+
+typedef enum amb_texture_kind { AMB_TEXTURE_2D, AMB_TEXTURE_CUBE, AMB_TEXTURE_3D } amb_texture_kind;
+
+typedef enum amb_texel {
+    AMB_TEXEL_R8, AMB_TEXEL_RG8, AMB_TEXEL_RGBA8,  /* unorm */
+    AMB_TEXEL_SRGB8_A8,                            /* rgb sRGB-coded, alpha linear; decoded before filtering */
+    AMB_TEXEL_R16F, AMB_TEXEL_RGBA16F,
+    AMB_TEXEL_R32F, AMB_TEXEL_RGBA32F,
+    AMB_TEXEL_R11G11B10F,
+} amb_texel; /* absent channels read 0, absent alpha 1 */
+
+#define AMB_MAX_TEXTURE_SIZE 32768
+#define AMB_MAX_TEXTURE_LEVELS 16
+
+typedef struct amb_texture amb_texture;
+
+typedef struct amb_texture_desc {
+    amb_texture_kind kind;
+    amb_texel texel;
+    int width, height, depth; /* texels; cube: width == height, depth ignored; 2D: depth ignored */
+    int levels;               /* levels given in `data`, each half the one before; 0 means 1 */
+    bool make_mips;           /* complete the chain below the given levels with a box filter in linear light */
+    /* Level by level; in a level cube faces +x -x +y -y +z -z (D3D order and orientation), slices, rows from the top,
+     * texels; tightly packed. Copied. */
+    const void *data;
+    size_t data_bytes;        /* must match exactly */
+} amb_texture_desc;
+
+/* Errors: ARGUMENT, LIMIT, MEMORY. */
+amb_status amb_texture_create(const amb_texture_desc *desc, amb_texture **out, amb_error *error);
+/* From a planar image of 1…4 channels: render to texture, environment maps, generators. */
+amb_status amb_texture_from_image(const amb_image *image, amb_texel texel, bool make_mips, amb_texture **out,
+                                  amb_error *error);
+/* From six square images of equal size, faces in D3D order. */
+amb_status amb_texture_cube_from_images(amb_image *const faces[6], amb_texel texel, bool make_mips, amb_texture **out,
+                                        amb_error *error);
+void amb_texture_close(amb_texture **texture); /* frees and nulls */
+
+typedef struct amb_texture_info {
+    amb_texture_kind kind;
+    amb_texel texel;
+    int width, height, depth, levels;
+} amb_texture_info;
+amb_texture_info amb_texture_describe(const amb_texture *texture);
+
+typedef enum amb_filter { AMB_NEAREST, AMB_BILINEAR, AMB_TRILINEAR } amb_filter;
+typedef enum amb_wrap { AMB_REPEAT, AMB_CLAMP, AMB_MIRROR } amb_wrap;
+
+typedef struct amb_sampler {
+    amb_filter filter;     /* BILINEAR uses the nearest mip, TRILINEAR blends two */
+    amb_wrap wrap[3];      /* u, v, w; cubes ignore it: their edges are always seamless */
+    float lod_bias;        /* added to the computed level */
+    float lod_min, lod_max; /* clamp of the level; lod_max 0 means no upper bound */
+    int max_anisotropy;    /* 0 or 1: isotropic; up to 16 */
+} amb_sampler;
+
+/* Lanes forms. uv: 0…1 across the texture, v down. direction: any length. Results: r, g, b linear, a.
+ * The plain form takes its derivatives from the 2×2 quads of the block (4 lanes or more); the _grad form takes
+ * d(uv)/dx and d(uv)/dy per pixel; the _lod form a level (0 = full size). */
+#if AMB_LANES > 1
+#define amb_sample_2d WIDE(amb_sample_2d)
+v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv);
+#define amb_sample_cube WIDE(amb_sample_cube)
+v4x amb_sample_cube(const amb_texture *texture, const amb_sampler *sampler, v3x direction);
+#endif
+#define amb_sample_2d_grad WIDE(amb_sample_2d_grad)
+v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy);
+#define amb_sample_2d_lod WIDE(amb_sample_2d_lod)
+v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod);
+#define amb_sample_cube_grad WIDE(amb_sample_cube_grad)
+v4x amb_sample_cube_grad(const amb_texture *texture, const amb_sampler *sampler, v3x direction, v3x ddx, v3x ddy);
+#define amb_sample_cube_lod WIDE(amb_sample_cube_lod)
+v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x lod);
+#define amb_sample_3d_lod WIDE(amb_sample_3d_lod)
+v4x amb_sample_3d_lod(const amb_texture *texture, const amb_sampler *sampler, v3x uvw, f32x lod);
+
+#endif
