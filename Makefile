@@ -16,7 +16,7 @@ VERSION := 0.1.0
 
 # One list for a fresh Debian 12: what `make demo` and `make test` install when it is missing.
 PACKAGES := clang gcc libomp-dev libclang-rt-14-dev pkg-config libembree-dev libopenexr-dev libassimp-dev libstb-dev \
-            libpng-dev libmd-dev zlib1g-dev libcmocka-dev libegl-dev libgles-dev libegl-mesa0 libgl1-mesa-dri
+            libpng-dev libmd-dev zlib1g-dev libjansson-dev libcmocka-dev libegl-dev libgles-dev libegl-mesa0 libgl1-mesa-dri
 export PACKAGES
 
 LIBS_PKG := OpenEXR assimp stb libpng libmd
@@ -31,7 +31,7 @@ CPPFLAGS += -Iinclude -I. -D_GNU_SOURCE -DAMB_VERSION='"$(VERSION)"' -isystem /u
             -isystem /usr/include/Imath -isystem /usr/include/stb
 CFLAGS  += -std=c17 $(OPT) -g1 -fPIC -fopenmp -fvisibility=default $(EXACT) $(WARN) $(SANITIZE)
 LDFLAGS += -fopenmp $(SANITIZE)
-LDLIBS  += -lembree3 -lOpenEXRCore-3_1 -lassimp -lstb -lpng -lmd -lz
+LDLIBS  += -lembree3 -lOpenEXRCore-3_1 -lassimp -lstb -lpng -lmd -lz -ljansson -lm
 
 MACHINE := $(shell uname -m)
 ifeq ($(MACHINE),x86_64)
