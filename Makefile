@@ -31,7 +31,7 @@ CPPFLAGS += -Iinclude -I. -D_GNU_SOURCE -DAMB_VERSION='"$(VERSION)"' -isystem /u
             -isystem /usr/include/Imath -isystem /usr/include/stb
 CFLAGS  += -std=c17 $(OPT) -g1 -fPIC -fopenmp -fvisibility=default $(EXACT) $(WARN) $(SANITIZE)
 LDFLAGS += -fopenmp $(SANITIZE)
-LDLIBS  += -lembree3 -lOpenEXRCore-3_1 -lassimp -lstb -lpng -lmd -lz -ljansson -lm
+LDLIBS  += -lembree3 -lOpenEXRCore-3_1 -lassimp -lstb -lpng -lmd -lz -lm
 
 MACHINE := $(shell uname -m)
 ifeq ($(MACHINE),x86_64)
@@ -89,7 +89,7 @@ $(BUILD)/libambiance.a: $(LIB_OBJ)
 $(BUILD)/libambiance.so: $(LIB_OBJ)
 	@echo "  ld    $@"; $(CC) -shared -Wl,-soname,libambiance.so.0 -o $@ $(LIB_OBJ) $(LDFLAGS) $(LDLIBS)
 $(BUILD)/ambiance: $(CLI_OBJ) $(BUILD)/libambiance.a
-	@echo "  ld    $@"; $(CC) -o $@ $(CLI_OBJ) $(BUILD)/libambiance.a $(LDFLAGS) $(LDLIBS)
+	@echo "  ld    $@"; $(CC) -o $@ $(CLI_OBJ) $(BUILD)/libambiance.a $(LDFLAGS) $(LDLIBS) -ljansson
 $(BUILD)/ambiance-bench: $(BENCH_OBJ) $(BUILD)/libambiance.a
 	@echo "  ld    $@"; $(CC) -o $@ $(BENCH_OBJ) $(BUILD)/libambiance.a $(LDFLAGS) $(LDLIBS) -lEGL -lGLESv2
 $(BUILD)/libtests.a: $(TEST_OBJ)

@@ -1,6 +1,6 @@
 #include <ambiance/compare.h>
 
-#include "core/suggest.h"
+#include "core/names.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -126,18 +126,7 @@ static void compare_layer(amb_comparison *c, tally *total, const char *name, con
 
 static bool is_chosen(const char *name, const char *layer) { return !layer || strcmp(name, layer) == 0; }
 
-static amb_status unknown_layer(const amb_frame *a, const amb_frame *b, const char *layer, amb_error *error)
-{
-    amb_names names = {.wanted = layer};
-    char hint[320];
-    for (int i = 0; i < a->layer_count; i++)
-        amb_names_offer(&names, a->layer[i].name);
-    for (int i = 0; i < b->layer_count; i++)
-        if (!amb_frame_layer(a, b->layer[i].name))
-            amb_names_offer(&names, b->layer[i].name);
-    return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown layer: %s; %s", layer,
-                    amb_names_hint(&names, hint, sizeof hint));
-}
+static const char *layer_name(const void *user, int index) { return ((const amb_frame *)user)->layer[index].name; }
 
 amb_status amb_compare_frames(const amb_frame *a, const amb_frame *b, const amb_compare_options *options,
                               amb_comparison **out, amb_error *error)
@@ -148,8 +137,10 @@ amb_status amb_compare_frames(const amb_frame *a, const amb_frame *b, const amb_
         return amb_fail(error, AMB_ERROR_ARGUMENT, "tolerance: %g; 0 or more is allowed", options->tolerance);
     if (!(options->peak >= 0.0) || isinf(options->peak))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "peak: %g; a finite value above 0 is allowed", options->peak);
+    char hint[320];
     if (options->layer && !amb_frame_layer(a, options->layer) && !amb_frame_layer(b, options->layer))
-        return unknown_layer(a, b, options->layer, error);
+        return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown layer: %s; %s", options->layer,
+                        amb_names_hint(options->layer, a->layer_count, layer_name, a, hint, sizeof hint));
 
     size_t rows = (size_t)(a->layer_count + b->layer_count) * AMB_MAX_CHANNELS;
     amb_comparison *c = calloc(1, sizeof *c + rows * sizeof c->row[0]);

@@ -1,5 +1,6 @@
 #include "core/names.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define LONGEST 63 /* longer words are not compared */
@@ -30,8 +31,7 @@ static int edit_distance(const char *a, const char *b)
     return row[length_b];
 }
 
-int amb_nearest_name(const char *wanted, int count, const char *(*name)(const void *user, int index),
-                     const void *user)
+int amb_nearest_name(const char *wanted, int count, const char *(*name)(const void *user, int index), const void *user)
 {
     int best = -1, best_distance = (int)strlen(wanted) / 2 + 1;
     for (int i = 0; i < count; i++) {
@@ -42,4 +42,24 @@ int amb_nearest_name(const char *wanted, int count, const char *(*name)(const vo
         }
     }
     return best;
+}
+
+const char *amb_names_hint(const char *wanted, int count, const char *(*name)(const void *user, int index),
+                           const void *user, char *text, size_t size)
+{
+    int nearest = amb_nearest_name(wanted, count, name, user);
+    if (nearest >= 0) {
+        snprintf(text, size, "did you mean %s?", name(user, nearest));
+        return text;
+    }
+    size_t length = (size_t)snprintf(text, size, count ? "known: " : "there are none");
+    for (int i = 0; i < count; i++) {
+        const char *separator = i ? ", " : "";
+        if (length + strlen(separator) + strlen(name(user, i)) + sizeof ", ..." > size) {
+            snprintf(text + length, size - length, ", ...");
+            break;
+        }
+        length += (size_t)snprintf(text + length, size - length, "%s%s", separator, name(user, i));
+    }
+    return text;
 }

@@ -1,7 +1,7 @@
 /* A loaded scene, its parameters and its assets: amb_show_* of scene.h. */
 #include <ambiance/scene.h>
 
-#include "core/suggest.h"
+#include "core/names.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,23 +17,21 @@ struct amb_show {
     char assets_sha256[65];
 };
 
-static amb_status unknown_scene(amb_isa isa, const char *name, amb_error *error)
+static const char *scene_name(const void *user, int index)
 {
-    amb_names names = {.wanted = name};
-    char hint[320];
-    for (int i = 0; i < amb_scene_count(); i++)
-        amb_names_offer(&names, amb_scene_by_index(isa, i)->name);
-    return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown scene: %s; %s", name ? name : "(none)",
-                    amb_names_hint(&names, hint, sizeof hint));
+    return amb_scene_by_index(*(const amb_isa *)user, index)->name;
 }
 
 amb_status amb_show_open(const amb_context *context, amb_assets *assets, const char *scene, amb_show **out,
                          amb_error *error)
 {
     *out = NULL;
-    const amb_scene *found = amb_scene_by_name(amb_context_isa(context), scene);
+    amb_isa isa = amb_context_isa(context);
+    const amb_scene *found = amb_scene_by_name(isa, scene);
+    char hint[320];
     if (!found)
-        return unknown_scene(amb_context_isa(context), scene, error);
+        return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown scene: %s; %s", scene,
+                        amb_names_hint(scene, amb_scene_count(), scene_name, &isa, hint, sizeof hint));
 
     amb_status status = AMB_OK;
     amb_show *show = calloc(1, sizeof *show);
@@ -64,22 +62,22 @@ amb_status amb_show_set(amb_show *show, const char *name, const char *value, amb
     return amb_params_set(&show->scene->params, show->params, show->owner, name, value, error);
 }
 
+static const char *aov_name(const void *user, int index) { return ((const amb_scene *)user)->aovs[index].name; }
+
 /* Marks in wanted[] the scene's AOVs that the NULL-ended names ask for. */
 static amb_status choose_aovs(const amb_scene *scene, const char *const *names, bool *wanted, amb_error *error)
 {
     for (; names && *names; names++) {
         bool is_all = strcmp(*names, "all") == 0, is_known = is_all;
-        amb_names known = {.wanted = *names};
         for (size_t i = 0; i < scene->aov_count; i++) {
             bool is_this = strcmp(*names, scene->aovs[i].name) == 0;
             wanted[i] |= is_all || is_this;
             is_known |= is_this;
-            amb_names_offer(&known, scene->aovs[i].name);
         }
         char hint[320];
         if (!is_known)
             return amb_fail(error, AMB_ERROR_NOT_FOUND, "scene %s: unknown AOV: %s; %s", scene->name, *names,
-                            amb_names_hint(&known, hint, sizeof hint));
+                            amb_names_hint(*names, (int)scene->aov_count, aov_name, scene, hint, sizeof hint));
     }
     return AMB_OK;
 }
@@ -122,6 +120,7 @@ amb_status amb_show_render(const amb_show *show, double time, int width, int hei
     const amb_scene *scene = show->scene;
     bool wanted[AMB_MAX_LAYERS] = {false};
     amb_frame *frame = NULL;
+    amb_image *image;
     *out = NULL;
 
     if (!isfinite(time))
@@ -135,8 +134,7 @@ amb_status amb_show_render(const amb_show *show, double time, int width, int hei
         status = amb_frame_create(width, height, &frame, error);
     for (size_t i = 0; status == AMB_OK && i < scene->aov_count; i++)
         if (wanted[i])
-            status =
-                amb_frame_add_layer(frame, scene->aovs[i].name, scene->aovs[i].channels, &(amb_image *){NULL}, error);
+            status = amb_frame_add_layer(frame, scene->aovs[i].name, scene->aovs[i].channels, &image, error);
     if (status == AMB_OK)
         status = describe_frame(show, time, frame, error);
     if (status != AMB_OK)
