@@ -149,15 +149,17 @@ amb_status amb_params_set(const amb_params *params, void *values, const char *ow
 static int print_number(float number, char *text, size_t size)
 {
     char digits[32];
-    int precision = 1;
-    for (; precision < 9; precision++) {
+    for (int precision = 1; precision <= 9; precision++) {
         const char *end;
         float back;
         snprintf(digits, sizeof digits, "%.*g", precision, (double)number);
+        for (char *c = digits; *c; c++)
+            if (*c == ',') /* a host program's locale */
+                *c = '.';
         if (read_number(digits, &end, &back) && memcmp(&back, &number, sizeof back) == 0)
             break;
     }
-    return snprintf(text, size, "%.*g", precision, (double)number);
+    return snprintf(text, size, "%s", digits);
 }
 
 int amb_params_print(const amb_param *param, const void *values, char *text, size_t size)
