@@ -32,8 +32,8 @@ typedef struct hermite {
 static v3 hermite_sum(const amb_spline_key *key, size_t count, size_t i, hermite w)
 {
     v3 ends = v3_add(v3_scale(key[i].value, w.value0), v3_scale(key[i + 1].value, w.value1));
-    v3 slopes = v3_add(v3_scale(key_tangent(key, count, i), w.tangent0),
-                       v3_scale(key_tangent(key, count, i + 1), w.tangent1));
+    v3 slopes =
+        v3_add(v3_scale(key_tangent(key, count, i), w.tangent0), v3_scale(key_tangent(key, count, i + 1), w.tangent1));
     return v3_add(ends, slopes);
 }
 
@@ -102,8 +102,8 @@ static v3 camera_spline(const amb_camera_key *key, size_t count, size_t member, 
     return amb_spline_at(window, n, time);
 }
 
-amb_camera amb_camera_at(const amb_camera_key *key, size_t count, float time, float vertical_fov, float near,
-                         float far, int width, int height)
+amb_camera amb_camera_at(const amb_camera_key *key, size_t count, float time, float vertical_fov, float near, float far,
+                         int width, int height)
 {
     return amb_camera_look(camera_spline(key, count, offsetof(amb_camera_key, position), time),
                            camera_spline(key, count, offsetof(amb_camera_key, target), time),

@@ -28,9 +28,12 @@ int amb_isa_available(amb_isa isa)
 #endif
     switch (isa) {
     case AMB_ISA_AUTO:
-    case AMB_ISA_V2: return v2;
-    case AMB_ISA_V3: return v3;
-    case AMB_ISA_V4: return v4;
+    case AMB_ISA_V2:
+        return v2;
+    case AMB_ISA_V3:
+        return v3;
+    case AMB_ISA_V4:
+        return v4;
     }
     return 0;
 }
@@ -63,7 +66,8 @@ amb_status amb_context_create(const amb_context_options *options, amb_context **
     if (use.isa == AMB_ISA_AUTO)
         use.isa = widest_isa();
     if (!amb_isa_available(use.isa))
-        return amb_fail(error, AMB_ERROR_ISA, "instruction set %s: this processor has %s at most", amb_isa_name(use.isa),
+        return amb_fail(error, AMB_ERROR_ISA, "instruction set %s: this processor has %s at most",
+                        amb_isa_name(use.isa),
                         amb_isa_available(AMB_ISA_V2) ? amb_isa_name(widest_isa()) : "less than v2");
     if (use.threads < 0 || use.threads > MAX_THREADS)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "threads %d: allowed are 0 (one per processor) to %d", use.threads,

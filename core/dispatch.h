@@ -8,9 +8,9 @@
 #include <ambiance/context.h>
 
 #if defined(__x86_64__)
-#define AMB_DECLARE_WIDE(result, name, arguments)                                                                     \
-    result name##_x4 arguments;                                                                                       \
-    result name##_x8 arguments;                                                                                       \
+#define AMB_DECLARE_WIDE(result, name, arguments) \
+    result name##_x4 arguments;                   \
+    result name##_x8 arguments;                   \
     result name##_x16 arguments
 #define AMB_DISPATCH(isa, name) ((isa) == AMB_ISA_V4 ? name##_x16 : (isa) == AMB_ISA_V3 ? name##_x8 : name##_x4)
 #else

@@ -6,15 +6,24 @@
 const char *amb_status_text(amb_status status)
 {
     switch (status) {
-    case AMB_OK: return "no error";
-    case AMB_ERROR_ARGUMENT: return "bad argument";
-    case AMB_ERROR_MEMORY: return "out of memory";
-    case AMB_ERROR_IO: return "input/output failed";
-    case AMB_ERROR_FORMAT: return "malformed or unsupported file";
-    case AMB_ERROR_LIMIT: return "over a documented limit";
-    case AMB_ERROR_ISA: return "instruction set not available";
-    case AMB_ERROR_NOT_FOUND: return "no such name";
-    case AMB_ERROR_INTERRUPTED: return "interrupted";
+    case AMB_OK:
+        return "no error";
+    case AMB_ERROR_ARGUMENT:
+        return "bad argument";
+    case AMB_ERROR_MEMORY:
+        return "out of memory";
+    case AMB_ERROR_IO:
+        return "input/output failed";
+    case AMB_ERROR_FORMAT:
+        return "malformed or unsupported file";
+    case AMB_ERROR_LIMIT:
+        return "over a documented limit";
+    case AMB_ERROR_ISA:
+        return "instruction set not available";
+    case AMB_ERROR_NOT_FOUND:
+        return "no such name";
+    case AMB_ERROR_INTERRUPTED:
+        return "interrupted";
     }
     return "unknown status";
 }

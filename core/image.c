@@ -25,8 +25,8 @@ amb_status amb_image_create(int width, int height, int channels, amb_image **out
     amb_image *image = malloc(sizeof *image);
     if (!image)
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for an image");
-    *image = (amb_image){
-        .width = width, .height = height, .channels = channels, .stride = ((size_t)width + 15) / 16 * 16};
+    *image =
+        (amb_image){.width = width, .height = height, .channels = channels, .stride = ((size_t)width + 15) / 16 * 16};
     size_t bytes = image_floats(image) * sizeof(float); /* a multiple of 64 by the stride */
     image->data = aligned_alloc(64, bytes);
     if (!image->data) {

@@ -99,9 +99,10 @@ static void describe_allowed(const amb_param *param, char *text, size_t size)
         for (int i = 0; param->choices[i] && length < size; i++)
             length += (size_t)snprintf(text + length, size - length, "%s %s", i ? "," : "", param->choices[i]);
     } else {
-        snprintf(text, size, "%s from %.9g to %.9g", components(param) == 3         ? "three numbers x,y,z each"
-                                                     : param->type == AMB_PARAM_INT ? "a whole number"
-                                                                                    : "a number",
+        snprintf(text, size, "%s from %.9g to %.9g",
+                 components(param) == 3         ? "three numbers x,y,z each"
+                 : param->type == AMB_PARAM_INT ? "a whole number"
+                                                : "a number",
                  (double)param->minimum, (double)param->maximum);
     }
 }
@@ -117,13 +118,12 @@ static amb_status unknown(const amb_params *params, const char *owner, const cha
     char known[320] = "none";
     size_t length = 0;
     for (size_t i = 0; i < params->count && length < sizeof known; i++)
-        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "",
-                                   params->table[i].name);
+        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", params->table[i].name);
     return amb_fail(error, AMB_ERROR_NOT_FOUND, "%s has no parameter '%s'; it has: %s", owner, name, known);
 }
 
-amb_status amb_params_set(const amb_params *params, void *values, const char *owner, const char *name,
-                          const char *text, amb_error *error)
+amb_status amb_params_set(const amb_params *params, void *values, const char *owner, const char *name, const char *text,
+                          amb_error *error)
 {
     for (size_t i = 0; i < params->count; i++) {
         const amb_param *param = &params->table[i];

@@ -64,8 +64,10 @@ m4 m4_look_at(v3 eye, v3 target, v3 up)
     v3 back = v3_normalize(v3_sub(eye, target));
     v3 right = v3_normalize(v3_cross(up, back));
     v3 above = v3_cross(back, right);
-    return (m4){{v4_of3(right, -v3_dot(right, eye)), v4_of3(above, -v3_dot(above, eye)),
-                 v4_of3(back, -v3_dot(back, eye)), {0, 0, 0, 1}}};
+    return (m4){{v4_of3(right, -v3_dot(right, eye)),
+                 v4_of3(above, -v3_dot(above, eye)),
+                 v4_of3(back, -v3_dot(back, eye)),
+                 {0, 0, 0, 1}}};
 }
 
 m4 m4_perspective(float vertical_fov, float aspect, float near, float far)

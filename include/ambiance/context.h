@@ -10,7 +10,7 @@ typedef enum amb_isa {
     AMB_ISA_V2 = 4,   /* x86-64-v2 (SSE4.2), or the baseline of another architecture: 4 lanes */
     AMB_ISA_V3 = 8,   /* x86-64-v3 (AVX2): 8 lanes */
     AMB_ISA_V4 = 16,  /* x86-64-v4 (AVX-512): 16 lanes */
-} amb_isa;           /* the value is the number of lanes */
+} amb_isa;            /* the value is the number of lanes */
 
 typedef struct amb_context amb_context;
 

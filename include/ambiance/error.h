@@ -23,8 +23,8 @@ typedef struct amb_error {
 /* The code's fixed text; never NULL. */
 const char *amb_status_text(amb_status status);
 
-/* Fills *error (when not NULL) with the status and the formatted line; control characters become '?'. Returns status. */
-amb_status amb_fail(amb_error *error, amb_status status, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+/* Fills *error (when not NULL) with the status and the formatted line; control characters become '?'. Returns status.
+ */
+amb_status amb_fail(amb_error *error, amb_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -13,9 +13,9 @@ typedef struct amb_layer {
 
 typedef struct amb_metadata { /* what made the frame; strings owned by the frame */
     char scene[64];
-    double time; /* seconds */
-    char *parameters; /* "name=value" joined by spaces, every parameter; may be NULL */
-    char *post;       /* the chain, as --post reads it; NULL: none */
+    double time;            /* seconds */
+    char *parameters;       /* "name=value" joined by spaces, every parameter; may be NULL */
+    char *post;             /* the chain, as --post reads it; NULL: none */
     char assets_sha256[65]; /* digest of the asset set used; "" if none */
     char version[32];
 } amb_metadata;

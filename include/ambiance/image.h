@@ -6,7 +6,7 @@
 #include <ambiance/error.h>
 #include <stddef.h>
 
-#define AMB_MAX_IMAGE_SIZE 65536     /* width or height, pixels */
+#define AMB_MAX_IMAGE_SIZE 65536       /* width or height, pixels */
 #define AMB_MAX_IMAGE_PIXELS (1 << 28) /* width × height */
 #define AMB_MAX_CHANNELS 4
 

@@ -18,15 +18,15 @@ typedef enum amb_param_type {
 typedef struct amb_param {
     const char *name;
     amb_param_type type;
-    const char *unit;        /* "" when it has none */
-    float minimum, maximum;  /* inclusive; each component; unused by BOOL and CHOICE */
-    float fallback[3];       /* the default */
+    const char *unit;           /* "" when it has none */
+    float minimum, maximum;     /* inclusive; each component; unused by BOOL and CHOICE */
+    float fallback[3];          /* the default */
     const char *const *choices; /* NULL-ended; CHOICE only */
-    size_t offset;           /* of the field in the owner's parameter struct */
-    const char *doc;         /* one line */
+    size_t offset;              /* of the field in the owner's parameter struct */
+    const char *doc;            /* one line */
 } amb_param;
 
-typedef struct amb_params {  /* a table and the struct it describes */
+typedef struct amb_params { /* a table and the struct it describes */
     const amb_param *table;
     size_t count;
     size_t size; /* bytes of the struct */
@@ -36,8 +36,8 @@ typedef struct amb_params {  /* a table and the struct it describes */
 void amb_params_defaults(const amb_params *params, void *values);
 /* Sets one from text. NOT_FOUND names the parameter and lists (or suggests) known ones; ARGUMENT names value and range.
  * On error nothing changes. `owner` ("scene julia") starts the error line. */
-amb_status amb_params_set(const amb_params *params, void *values, const char *owner, const char *name,
-                          const char *text, amb_error *error);
+amb_status amb_params_set(const amb_params *params, void *values, const char *owner, const char *name, const char *text,
+                          amb_error *error);
 /* The value as text that amb_params_set reads back to the same bits. Returns the length as snprintf does. */
 int amb_params_print(const amb_param *param, const void *values, char *text, size_t size);
 

@@ -6,13 +6,27 @@
 
 #include <ambiance/wide.h>
 
-typedef struct { float x, y; } v2;
-typedef struct { float x, y, z; } v3;
-typedef struct { float x, y, z, w; } v4;
-typedef struct { f32x x, y; } v2x;
-typedef struct { f32x x, y, z; } v3x;
-typedef struct { f32x x, y, z, w; } v4x;
-typedef struct { v4 row[4]; } m4; /* row-major; vectors are columns: m·v */
+typedef struct {
+    float x, y;
+} v2;
+typedef struct {
+    float x, y, z;
+} v3;
+typedef struct {
+    float x, y, z, w;
+} v4;
+typedef struct {
+    f32x x, y;
+} v2x;
+typedef struct {
+    f32x x, y, z;
+} v3x;
+typedef struct {
+    f32x x, y, z, w;
+} v4x;
+typedef struct {
+    v4 row[4];
+} m4; /* row-major; vectors are columns: m·v */
 
 AMB_INLINE float amb_s_min(float a, float b) { return a < b ? a : b; }
 AMB_INLINE float amb_s_max(float a, float b) { return a > b ? a : b; }

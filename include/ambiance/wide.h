@@ -73,11 +73,33 @@ AMB_INLINE f32x f_set(float a) { return a; }
 AMB_INLINE i32x i_set(int32_t a) { return a; }
 AMB_INLINE u32x u_set(uint32_t a) { return a; }
 AMB_INLINE maskx m_set(bool a) { return a ? 1 : 0; }
-AMB_INLINE float f_lane(f32x a, int lane) { (void)lane; return a; }
-AMB_INLINE int32_t i_lane(i32x a, int lane) { (void)lane; return a; }
-AMB_INLINE uint32_t u_lane(u32x a, int lane) { (void)lane; return a; }
-AMB_INLINE f32x f_with_lane(f32x a, int lane, float value) { (void)a; (void)lane; return value; }
-AMB_INLINE i32x i_with_lane(i32x a, int lane, int32_t value) { (void)a; (void)lane; return value; }
+AMB_INLINE float f_lane(f32x a, int lane)
+{
+    (void)lane;
+    return a;
+}
+AMB_INLINE int32_t i_lane(i32x a, int lane)
+{
+    (void)lane;
+    return a;
+}
+AMB_INLINE uint32_t u_lane(u32x a, int lane)
+{
+    (void)lane;
+    return a;
+}
+AMB_INLINE f32x f_with_lane(f32x a, int lane, float value)
+{
+    (void)a;
+    (void)lane;
+    return value;
+}
+AMB_INLINE i32x i_with_lane(i32x a, int lane, int32_t value)
+{
+    (void)a;
+    (void)lane;
+    return value;
+}
 AMB_INLINE i32x i_lane_index(void) { return 0; }
 #else
 AMB_INLINE f32x f_set(float a) { return a - (f32x){0}; } /* a - (+0) keeps every bit, -0 and NaN too */
@@ -87,8 +109,16 @@ AMB_INLINE maskx m_set(bool a) { return i_set(a ? -1 : 0); }
 AMB_INLINE float f_lane(f32x a, int lane) { return a[lane]; }
 AMB_INLINE int32_t i_lane(i32x a, int lane) { return a[lane]; }
 AMB_INLINE uint32_t u_lane(u32x a, int lane) { return a[lane]; }
-AMB_INLINE f32x f_with_lane(f32x a, int lane, float value) { a[lane] = value; return a; }
-AMB_INLINE i32x i_with_lane(i32x a, int lane, int32_t value) { a[lane] = value; return a; }
+AMB_INLINE f32x f_with_lane(f32x a, int lane, float value)
+{
+    a[lane] = value;
+    return a;
+}
+AMB_INLINE i32x i_with_lane(i32x a, int lane, int32_t value)
+{
+    a[lane] = value;
+    return a;
+}
 AMB_INLINE i32x i_lane_index(void)
 {
 #if AMB_LANES == 4
@@ -102,15 +132,35 @@ AMB_INLINE i32x i_lane_index(void)
 #endif
 
 /* Bit casts. */
-AMB_INLINE i32x f_bits(f32x a) { i32x r; memcpy(&r, &a, sizeof r); return r; }
-AMB_INLINE f32x f_from_bits(i32x a) { f32x r; memcpy(&r, &a, sizeof r); return r; }
+AMB_INLINE i32x f_bits(f32x a)
+{
+    i32x r;
+    memcpy(&r, &a, sizeof r);
+    return r;
+}
+AMB_INLINE f32x f_from_bits(i32x a)
+{
+    f32x r;
+    memcpy(&r, &a, sizeof r);
+    return r;
+}
 AMB_INLINE u32x i_as_u(i32x a) { return (u32x)a; }
 AMB_INLINE i32x u_as_i(u32x a) { return (i32x)a; }
 
 /* AMB_LANES consecutive values; no alignment needed. */
-AMB_INLINE f32x f_load(const float *p) { f32x r; memcpy(&r, p, sizeof r); return r; }
+AMB_INLINE f32x f_load(const float *p)
+{
+    f32x r;
+    memcpy(&r, p, sizeof r);
+    return r;
+}
 AMB_INLINE void f_store(float *p, f32x a) { memcpy(p, &a, sizeof a); }
-AMB_INLINE i32x i_load(const int32_t *p) { i32x r; memcpy(&r, p, sizeof r); return r; }
+AMB_INLINE i32x i_load(const int32_t *p)
+{
+    i32x r;
+    memcpy(&r, p, sizeof r);
+    return r;
+}
 AMB_INLINE void i_store(int32_t *p, i32x a) { memcpy(p, &a, sizeof a); }
 
 /* base[index] lane by lane; every lane's index must be valid (dead lanes too). */
@@ -258,7 +308,7 @@ AMB_INLINE f32x f_copysign(f32x magnitude, f32x sign)
     return f_from_bits((f_bits(magnitude) & 0x7fffffff) | (f_bits(sign) & INT32_MIN));
 }
 AMB_INLINE f32x f_clamp(f32x a, f32x lo, f32x hi) { return f_min(f_max(a, lo), hi); } /* NaN gives lo */
-AMB_INLINE f32x f_saturate(f32x a) { return f_clamp(a, f_set(0.0f), f_set(1.0f)); }  /* NaN gives 0 */
+AMB_INLINE f32x f_saturate(f32x a) { return f_clamp(a, f_set(0.0f), f_set(1.0f)); }   /* NaN gives 0 */
 AMB_INLINE f32x f_lerp(f32x a, f32x b, f32x t) { return a + (b - a) * t; }
 AMB_INLINE maskx f_is_nan(f32x a) { return a != a; }
 AMB_INLINE maskx f_is_finite(f32x a) { return f_abs(a) <= FLT_MAX; }
@@ -305,7 +355,8 @@ AMB_INLINE f32x f_ceil(f32x a) { return -f_floor(-a); }
 /* Nearest integer, ties to even. */
 AMB_INLINE f32x f_round(f32x a)
 {
-    f32x magic = f_copysign(f_set(8388608.0f), a); /* adding 2²³ leaves no fraction bits; rounding mode is nearest-even */
+    f32x magic =
+        f_copysign(f_set(8388608.0f), a); /* adding 2²³ leaves no fraction bits; rounding mode is nearest-even */
     f32x r = f_copysign((a + magic) - magic, a);
     return f_sel(f_abs(a) < 8388608.0f, r, a);
 }
@@ -341,7 +392,8 @@ AMB_INLINE i32x i_block_y(void)
     __builtin_shufflevector(v, v, a, b, c, d, a + 4, b + 4, c + 4, d + 4, a + 8, b + 8, c + 8, d + 8, a + 12, b + 12, \
                             c + 12, d + 12)
 #endif
-/* Screen-space derivatives per pixel, from the pixel's own row (x, to the right) and column (y, down) of its 2×2 quad. */
+/* Screen-space derivatives per pixel, from the pixel's own row (x, to the right) and column (y, down) of its 2×2 quad.
+ */
 AMB_INLINE f32x f_ddx(f32x a) { return AMB_QUAD_(a, 1, 1, 3, 3) - AMB_QUAD_(a, 0, 0, 2, 2); }
 AMB_INLINE f32x f_ddy(f32x a) { return AMB_QUAD_(a, 2, 3, 2, 3) - AMB_QUAD_(a, 0, 1, 0, 1); }
 #endif
