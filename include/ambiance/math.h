@@ -74,22 +74,19 @@ AMB_INLINE f32x f_exp2(f32x a)
     f32x c = f_max(f_set(-151.0f), f_min(f_set(129.0f), a));
     f32x t = c + AMB_ROUND_MAGIC;
     f32x r = c - (t - AMB_ROUND_MAGIC);
-    f32x q = ((((0.000154765876f * r + 0.00134005374f) * r + 0.00961800292f) * r + 0.0555032715f) * r + 0.240226507f) *
-                 r +
-             0.693147182f;
-    return amb_scale_(1.0f + r * q, f_bits(t) - 0x4b400000);
+    return amb_scale_(amb_exp_core_(r * 0.693147182f), f_bits(t) - 0x4b400000);
 }
 
 /* ---- logarithms ------------------------------------------------------------------------------------------------- */
 
-/* |a| = m·2ᵉ with m in [√½, √2): returns m - 1 (exact) and *e. |a| finite and not zero. */
+/* |a| = m·2ᵉ: returns m in [√½, √2), and *e. |a| finite and not zero. */
 AMB_INLINE f32x amb_log_split_(f32x a, f32x *e)
 {
     maskx denormal = f_abs(a) < FLT_MIN;
     i32x bits = f_bits(f_sel(denormal, a * 8388608.0f, a)) & 0x7fffffff;
     i32x n = (bits - 0x3f3504f3) >> 23; /* 0x3f3504f3 is √½ */
     *e = i_to_f(n) - f_sel(denormal, f_set(23.0f), f_set(0.0f));
-    return f_from_bits(bits - (n << 23)) - 1.0f;
+    return f_from_bits(bits - (n << 23));
 }
 
 /* log(1+f) - f + f²/2 for f in [√½-1, √2-1]. */
@@ -112,7 +109,7 @@ AMB_INLINE f32x amb_log_edges_(f32x a, f32x r)
 AMB_INLINE f32x f_log(f32x a)
 {
     f32x e;
-    f32x f = amb_log_split_(a, &e);
+    f32x f = amb_log_split_(a, &e) - 1.0f; /* exact */
     f32x half = 0.5f * f * f;
     f32x r = e * 1.42860677e-06f + amb_log_tail_(f);
     return amb_log_edges_(a, (f - (half - r)) + e * 0.693145752f);
@@ -122,7 +119,7 @@ AMB_INLINE f32x f_log(f32x a)
 AMB_INLINE f32x f_log2(f32x a)
 {
     f32x e;
-    f32x f = amb_log_split_(a, &e);
+    f32x f = amb_log_split_(a, &e) - 1.0f; /* exact */
     f32x half = 0.5f * f * f;
     f32x high = f_from_bits(f_bits(f - half) & ~0xfff); /* 12 bits, so that its product below is exact */
     f32x low = ((f - high) - half) + amb_log_tail_(f);
@@ -136,23 +133,31 @@ AMB_INLINE f32x f_log2(f32x a)
 
 AMB_INLINE f32x amb_high_(f32x a) { return f_from_bits(f_bits(a) & ~0xfff); } /* leading 12 bits */
 
-/* log₂|a| as *high + *low, relative error near 2⁻³¹: 2/ln2·(s + s³/3 + …), s = f/(2+f) (T. J. Dekker's products). */
+/* log₂|a| as *high + *low, relative error 2⁻³¹. With c the nearest of three centres, log₂ m = log₂ c + 2/ln2·(s + s³/3
+ * + …) for s = (m - c)/(m + c), |s| ≤ 0.06, held in two floats (products split after T. J. Dekker, Numer. Math. 18,
+ * 1971). */
 AMB_INLINE void amb_log2_pair_(f32x a, f32x *high, f32x *low)
 {
     f32x e;
-    f32x f = amb_log_split_(a, &e);
-    f32x d = 2.0f + f;
-    f32x d_low = f - (d - 2.0f);
+    f32x m = amb_log_split_(a, &e);
+    maskx below = m<0.890625f, above = m> 1.12109375f;
+    f32x c = f_sel(below, f_set(0.796875f), f_sel(above, f_set(1.2578125f), f_set(1.0f)));
+    f32x log_c = f_sel(below, f_set(-0.327575684f), f_sel(above, f_set(0.330932617f), f_set(0.0f)));
+    f32x log_c_low = f_sel(below, f_set(1.02556521e-06f), f_sel(above, f_set(-1.57390732e-05f), f_set(0.0f)));
+    f32x f = m - c, d = m + c; /* the first is exact */
+    f32x d_low = m - (d - c);
     f32x inv = 1.0f / d;
     f32x s = f * inv;
     f32x sh = amb_high_(s), sl = s - sh, dh = amb_high_(d), dl = d - dh;
-    f32x s_low = ((((f - sh * dh) - sh * dl) - sl * dh) - sl * dl - s * d_low) * inv;
+    f32x s_low = (((f - sh * dh) - sh * dl) - sl * dh - (sl * dl + s * d_low)) * inv;
     f32x s2 = s * s;
-    f32x tail = s2 * s * (((0.340423077f * s2 + 0.411696166f) * s2 + 0.577082992f) * s2 + 0.961796701f);
+    f32x tail = s2 * s * ((0.414424747f * s2 + 0.577073336f) * s2 + 0.961796701f);
     f32x p = sh * 2.88476562f; /* exact: 12 bits each */
-    f32x p_low = (sl * 2.88476562f + (tail + (s * 0.000624456792f + s_low * 2.88539008f)));
-    f32x sum = e + p;
-    f32x rest = (p - (sum - e)) + p_low;
+    f32x p_low =
+        sl * 2.88476562f + (tail + (s * 0.000624456792f + (s_low * (2.88539008f + 2.88539008f * s2) + log_c_low)));
+    f32x base = e + log_c; /* exact */
+    f32x sum = base + p;
+    f32x rest = (p - (sum - base)) + p_low;
     *high = sum + rest;
     *low = rest - (*high - sum);
 }
@@ -183,16 +188,16 @@ AMB_INLINE f32x f_pow(f32x base, f32x exponent)
     i32x yi = f_to_i(exponent); /* even from 2²⁴ on, as clamped values are */
     maskx odd = ((yi & 1) != 0) & (i_to_f(yi) == exponent);
     power = f_sel(odd, f_copysign(power, base), power);
-    maskx invalid = ((base < 0.0f) & (base != -__builtin_inff()) & (f_floor(exponent) != exponent)) |
-                    f_is_nan(base) | f_is_nan(exponent);
+    maskx invalid = ((base < 0.0f) & (base != -__builtin_inff()) & (f_floor(exponent) != exponent)) | f_is_nan(base) |
+                    f_is_nan(exponent);
     power = f_sel(invalid, f_set(__builtin_nanf("")), power);
     return f_sel((exponent == 0.0f) | (base == 1.0f), f_set(1.0f), power);
 }
 
 /* ---- trigonometry (radians) ------------------------------------------------------------------------------------- */
 
-/* a ≥ 0 as quadrant·π/2 + r + r_low. Cody–Waite with an 11+11+11+24 bit π/2 up to 12 000, where every product but the last
- * is exact; above, lane by lane, Payne–Hanek. Inf and NaN give NaN. */
+/* a ≥ 0 as quadrant·π/2 + r + r_low. Cody–Waite with an 11+11+11+24 bit π/2 up to 12 000, where every product but the
+ * last is exact; above, lane by lane, Payne–Hanek. Inf and NaN give NaN. */
 AMB_INLINE i32x amb_quadrant_(f32x a, f32x *r, f32x *r_low)
 {
     maskx large = a > 12000.0f;
@@ -264,8 +269,12 @@ AMB_INLINE f32x f_tan(f32x a)
     f32x r, r_low;
     i32x quadrant = amb_quadrant_(f_abs(a), &r, &r_low);
     f32x r2 = r * r;
-    f32x p = ((((((0.00452579372f * r2 - 0.000215426538f) * r2 + 0.011078258f) * r2 + 0.0211877096f) * r2 +
-                0.054078456f) * r2 + 0.133324966f) * r2 + 0.333333552f);
+    f32x p =
+        ((((((0.00452579372f * r2 - 0.000215426538f) * r2 + 0.011078258f) * r2 + 0.0211877096f) * r2 + 0.054078456f) *
+              r2 +
+          0.133324966f) *
+             r2 +
+         0.333333552f);
     f32x t = r + (r * r2 * p + (r_low + r_low * r2));
     t = f_sel((quadrant & 1) != 0, -1.0f / t, t);
     return f_from_bits(f_bits(t) ^ (f_bits(a) & INT32_MIN));
@@ -327,7 +336,8 @@ AMB_INLINE f32x f_atan(f32x a)
     return f_copysign(base + (x + (amb_atan_tail_(x) + base_low)), a);
 }
 
-/* Angle of (x, y) in [-π, π], ≤ 2.5 ULP, signs and infinities as in C Annex F: atan2(±0, -0) = ±π, atan2(±0, +0) = ±0. */
+/* Angle of (x, y) in [-π, π], ≤ 2.5 ULP, signs and infinities as in C Annex F: atan2(±0, -0) = ±π, atan2(±0, +0) = ±0.
+ */
 AMB_INLINE f32x f_atan2(f32x y, f32x x)
 {
     f32x inf = f_set(__builtin_inff());
@@ -335,7 +345,8 @@ AMB_INLINE f32x f_atan2(f32x y, f32x x)
     maskx steep = ay > ax;
     f32x low = f_sel(steep, ax, ay), high = f_sel(steep, ay, ax);
     /* Powers of two that keep low + high finite and low / high out of the denormals where it matters. */
-    f32x scale = f_sel(high > 1.0e30f, f_set(1.0f / 16777216.0f), f_sel(high < 1.0e-20f, f_set(16777216.0f), f_set(1.0f)));
+    f32x scale =
+        f_sel(high > 1.0e30f, f_set(1.0f / 16777216.0f), f_sel(high < 1.0e-20f, f_set(16777216.0f), f_set(1.0f)));
     f32x l = low * scale, h = high * scale;
     maskx middle = l > 0.414213562f * h;
     f32x q = f_sel(middle, l - h, l) / f_sel(middle, l + h, h);
@@ -363,15 +374,15 @@ AMB_INLINE f32x f_atan2(f32x y, f32x x)
 AMB_INLINE f32x f_cbrt(f32x a)
 {
     f32x m = f_abs(a);
-    maskx denormal = m < FLT_MIN;
-    f32x x = f_sel(denormal, m * 16777216.0f, m);
+    maskx tiny = m<1.0e-30f, huge = m> 1.0e30f;
+    f32x x = m * f_sel(tiny, f_set(16777216.0f), f_sel(huge, f_set(1.0f / 16777216.0f), f_set(1.0f)));
     f32x t = f_from_bits(f_to_i(i_to_f(f_bits(x)) * 0.333333333f) + 709921077);
     f32x t3 = t * t * t;
-    t = t * (t3 + 2.0f * x) / (2.0f * t3 + x);
+    t = t * ((t3 + 2.0f * x) / (2.0f * t3 + x));
     t = f_from_bits((f_bits(t) + 0x8000) & ~0xffff);
     t3 = t * t * t;
     t = t + t * ((x - t3) / (2.0f * t3 + x));
-    t = f_sel(denormal, t * 0.00390625f, t);
+    t = t * f_sel(tiny, f_set(0.00390625f), f_sel(huge, f_set(256.0f), f_set(1.0f)));
     return f_sel((m > 0.0f) & (m < __builtin_inff()), f_copysign(t, a), a);
 }
 
