@@ -110,11 +110,91 @@ force:
            $(patsubst tests/%.c,$(BUILD)/obj/tests/%.o,$(TEST_PROG) $(FUZZ_PROG)))
 
 # ---- tests ----------------------------------------------------------------------------------------------------------
-.PHONY: check
-check: $(TESTS) $(BUILD)/ambiance ## unit and property tests of this build (under a minute)
-	@fail=0; for t in $(TESTS); do echo "== $$t"; AMBIANCE=$(BUILD)/ambiance $$t || fail=1; done; exit $$fail
+.PHONY: check test
+check: $(TESTS) $(BUILD)/ambiance ## this build's unit and property tests (about a minute)
+	@failed=; for t in $(TESTS); do \
+	    echo "== $$t"; AMBIANCE=$(BUILD)/ambiance $$t > $$t.log 2>&1 && tail -n 1 $$t.log || { failed="$$failed $$t"; cat $$t.log; }; \
+	done; \
+	test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 
-.PHONY: clean
+test: deps ## everything: both compilers, goldens, installed library, sanitizers, short fuzzing (from nothing)
+	$(MAKE) CC=clang all check
+	$(MAKE) CC=gcc BUILD=$(BUILD)/gcc all check
+	$(MAKE) CC=clang golden
+	$(MAKE) CC=clang test-install
+	$(MAKE) sanitize tsan
+	$(MAKE) fuzz SECONDS=5
+	@echo "all tests passed"
+
+.PHONY: asan ubsan sanitize tsan fuzz
+SAN := -fno-omit-frame-pointer -fno-sanitize-recover=all
+asan: ## the tests under AddressSanitizer and LeakSanitizer
+	$(MAKE) CC=clang BUILD=$(BUILD)/asan SANITIZE="-fsanitize=address $(SAN)" OPT=-O1 check
+ubsan: ## the tests under UndefinedBehaviorSanitizer
+	$(MAKE) CC=clang BUILD=$(BUILD)/ubsan SANITIZE="-fsanitize=undefined $(SAN)" OPT=-O1 check
+sanitize: ## both of them in one build
+	$(MAKE) CC=clang BUILD=$(BUILD)/sanitize SANITIZE="-fsanitize=address$(comma)undefined $(SAN)" OPT=-O1 check
+
+# Archer tells ThreadSanitizer about OpenMP's own synchronisation.
+TSAN_TESTS ?= test_core test_raster test_rays test_post
+ARCHER     := $(firstword $(wildcard /usr/lib/llvm-*/lib/libarcher.so))
+tsan: ## the tests that run on several threads under ThreadSanitizer
+	OMP_TOOL_LIBRARIES=$(ARCHER) TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
+	    $(MAKE) CC=clang BUILD=$(BUILD)/tsan SANITIZE="-fsanitize=thread" OPT=-O1 tsan-run
+.PHONY: tsan-run
+tsan-run: $(addprefix $(BUILD)/tests/,$(TSAN_TESTS))
+	@for t in $^; do echo "== $$t (threads)"; $$t > $$t.log 2>&1 && tail -n 1 $$t.log || { cat $$t.log; exit 1; }; done
+
+SECONDS ?= 60
+fuzz: ## every fuzz target for SECONDS each, from its corpus in tests/data, under AddressSanitizer and UBSan
+	$(MAKE) CC=clang BUILD=$(BUILD)/fuzz SANITIZE="-fsanitize=address$(comma)undefined$(comma)fuzzer-no-link $(SAN)" OPT=-O1 fuzz-run
+.PHONY: fuzz-run
+fuzz-run: $(FUZZERS)
+	@for f in $^; do name=$$(basename $$f); mkdir -p $(BUILD)/corpus/$$name; echo "== $$name, $(SECONDS) s"; \
+	    $$f -max_total_time=$(SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
+	        -artifact_prefix=$(BUILD)/corpus/$$name- $(BUILD)/corpus/$$name $$(ls -d tests/data/$$name 2>/dev/null) \
+	        > $$f.log 2>&1 && grep -E 'number_of_executed_units' $$f.log || { tail -n 40 $$f.log; exit 1; }; done
+
+# ---- jobs -----------------------------------------------------------------------------------------------------------
+.PHONY: help deps demo bench lint format clean
+help: ## this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:[^#]*## /\t/' | sort | expand -t 14
+
+deps: ## install the Debian packages that are missing
+	@missing=$$(for p in $(PACKAGES); do \
+	    dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
+	if [ -n "$$missing" ]; then \
+	    echo "installing:" $$missing; \
+	    root=; [ "$$(id -u)" = 0 ] || root=sudo; \
+	    $$root apt-get update -qq && \
+	    $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing >/dev/null || \
+	    { echo "could not install:" $$missing "(as root: apt-get install them)"; exit 1; }; \
+	fi
+
+DEMO_SCENES ?= julia mercury lucy
+DEMO_SIZE   ?= 1440x1080
+demo: deps ## packages, build, assets, and the gallery in out/ (ASSETS=builtin fetches nothing)
+	$(MAKE) all
+	$(if $(filter builtin,$(ASSETS)),,$(MAKE) assets)
+	@mkdir -p out
+	@for s in $(DEMO_SCENES); do \
+	    $(BUILD)/ambiance render $$s --size $(DEMO_SIZE) $(if $(filter builtin,$(ASSETS)),--assets builtin) -o out/$$s.png && \
+	    $(BUILD)/ambiance render $$s --size $(DEMO_SIZE) $(if $(filter builtin,$(ASSETS)),--assets builtin) -o out/$$s.exr || exit $$?; \
+	done
+	@echo; echo "Look at:"; for s in $(DEMO_SCENES); do echo "  out/$$s.png   (HDR: out/$$s.exr)"; done
+
+bench: ## the table of ratios against llvmpipe and the machine's own peaks
+	$(MAKE) $(BUILD)/ambiance-bench
+	$(BUILD)/ambiance-bench $(BENCH_ARGS)
+
+FORMAT_FILES = $(shell git ls-files '*.c' '*.h')
+format: ## clang-format every file
+	clang-format -i $(FORMAT_FILES)
+lint: ## clang-format and clang-tidy, both clean
+	clang-format --dry-run -Werror $(FORMAT_FILES)
+	clang-tidy --quiet $(filter-out %_wide.c,$(filter %.c,$(FORMAT_FILES))) -- $(CPPFLAGS) -std=c17 -fopenmp
+	clang-tidy --quiet $(filter %_wide.c,$(FORMAT_FILES)) -- $(CPPFLAGS) -std=c17 -fopenmp -DAMB_LANES=8 $(ISA_8)
+
 clean: ## remove what this build made
 	rm -rf $(BUILD)
 
