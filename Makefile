@@ -112,6 +112,7 @@ force:
 # ---- tests ----------------------------------------------------------------------------------------------------------
 .PHONY: check test
 check: $(TESTS) $(BUILD)/ambiance ## this build's unit and property tests (about a minute)
+	@CC=$(CC) tests/build_rules.sh $(BUILD)
 	@failed=; for t in $(TESTS); do \
 	    echo "== $$t"; AMBIANCE=$(BUILD)/ambiance $$t > $$t.log 2>&1 && tail -n 1 $$t.log || { failed="$$failed $$t"; cat $$t.log; }; \
 	done; \
