@@ -28,7 +28,7 @@ typedef struct amb_vs_in {
 
 typedef struct amb_vs_out {
     v4x clip;       /* D3D clip space */
-    void *varyings; /* the draw's varyings struct of f32x members, to be written */
+    void *varyings; /* the draw's varyings struct of f32x members, zeroed, to be written */
 } amb_vs_out;
 
 typedef struct amb_fs_in {
@@ -43,7 +43,7 @@ typedef struct amb_fs_in {
 } amb_fs_in;
 
 typedef struct amb_fs_out {
-    v4x color[AMB_MAX_TARGETS]; /* of attachments 0…; channels an attachment lacks are ignored */
+    v4x color[AMB_MAX_TARGETS]; /* of attachments 0…; in: zero; channels an attachment lacks are ignored */
     f32x depth;                 /* in: the interpolated depth; read back only if the draw says writes_depth */
     maskx live;                 /* in: as fs_in; clear lanes to discard */
 } amb_fs_out;
@@ -55,7 +55,8 @@ typedef void (*amb_fragment_shader)(const amb_fs_in *in, amb_fs_out *out);
 
 typedef enum amb_cull { AMB_CULL_NONE, AMB_CULL_BACK, AMB_CULL_FRONT } amb_cull;
 typedef enum amb_compare {
-    AMB_COMPARE_DEFAULT = 0, /* LESS when the pass has depth */
+    AMB_COMPARE_DEFAULT = 0, /* LESS; LESS_EQUAL for full-screen draws, so that a background at depth 1 fills what is
+                              * still clear. Without a depth image every test passes. */
     AMB_NEVER, AMB_LESS, AMB_EQUAL, AMB_LESS_EQUAL, AMB_GREATER, AMB_NOT_EQUAL, AMB_GREATER_EQUAL, AMB_ALWAYS
 } amb_compare;
 typedef enum amb_blend {

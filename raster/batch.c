@@ -1,0 +1,208 @@
+/* Running a pass: draws are cut into chunks of triangles, chunks gathered into batches of bounded size. A batch goes
+ * through the geometry stages, one chunk a job, and then over the tiles, one tile a job. Each tile plays the chunks in
+ * order, so primitive order is kept however jobs are spread over threads. */
+#include <core/dispatch.h>
+#include <raster/internal.h>
+
+#include <stdlib.h>
+
+#define LOOKUP_SLOTS 32768
+
+AMB_DECLARE_WIDE(void, raster_vertices, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
+AMB_DECLARE_WIDE(void, raster_tile, (const amb_pass *pass, int tile, raster_scratch *scratch, int thread));
+
+static bool make_scratch(const amb_pass *pass, raster_scratch *s)
+{
+    const size_t vertices = RASTER_CHUNK_VERTICES + 16; /* lanes of padding */
+    size_t side = (size_t)pass->tile_size;
+    s->lookup = calloc(LOOKUP_SLOTS, sizeof *s->lookup);
+    s->index = malloc(vertices * sizeof *s->index);
+    s->instance = malloc(vertices * sizeof *s->instance);
+    s->clip_x = malloc(4 * vertices * sizeof *s->clip_x);
+    s->code = malloc(vertices);
+    s->corner = malloc((size_t)4 * RASTER_CHUNK_TRIANGLES * sizeof *s->corner);
+    s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
+    s->tile = aligned_alloc(64, side * side * (size_t)pass->planes * sizeof *s->tile);
+    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner || !s->group || !s->tile)
+        return false;
+    s->clip_y = s->clip_x + vertices;
+    s->clip_z = s->clip_y + vertices;
+    s->clip_w = s->clip_z + vertices;
+    return true;
+}
+
+static bool make_workers(amb_pass *pass)
+{
+    int threads = amb_context_threads(pass->context);
+    pass->scratch = calloc((size_t)threads, sizeof *pass->scratch);
+    if (!pass->scratch)
+        return false;
+    pass->threads = threads;
+    for (int i = 0; i < threads; i++)
+        if (!make_scratch(pass, &pass->scratch[i]))
+            return false;
+    return true;
+}
+
+/* ---- jobs ------------------------------------------------------------------------------------------------------- */
+
+static void chunk_job(void *user, int index, int thread)
+{
+    amb_pass *pass = user;
+    raster_chunk *chunk = &pass->chunk[index];
+    raster_scratch *scratch = &pass->scratch[thread];
+    if (chunk->count == 0)
+        return;
+    raster_collect(chunk, scratch);
+    size_t words = ((size_t)scratch->unique_count + 16) * chunk->stride;
+    if (!raster_grow(&chunk->vertex, &chunk->vertex_capacity, words, sizeof *chunk->vertex)) {
+        scratch->failed = true;
+        return;
+    }
+    AMB_DISPATCH(amb_context_isa(pass->context), raster_vertices)(pass, chunk, scratch);
+    raster_setup(pass, chunk, scratch);
+    raster_bin(pass, chunk, scratch);
+}
+
+static bool tile_is_touched(const amb_pass *pass, int tile)
+{
+    for (size_t i = 0; i < pass->chunk_count; i++) {
+        const raster_chunk *chunk = &pass->chunk[i];
+        if (chunk->count == 0 || chunk->large_count > 0 || chunk->tile_start[tile] < chunk->tile_start[tile + 1])
+            return true;
+    }
+    return false;
+}
+
+static void tile_job(void *user, int index, int thread)
+{
+    amb_pass *pass = user;
+    if (!tile_is_touched(pass, index))
+        return;
+    AMB_DISPATCH(amb_context_isa(pass->context), raster_tile)(pass, index, &pass->scratch[thread], thread);
+    pass->tile_started[index] = 1;
+}
+
+static bool run_batch(amb_pass *pass)
+{
+    if (pass->chunk_count == 0)
+        return true;
+    amb_parallel_for(pass->context, (int)pass->chunk_count, chunk_job, pass);
+    for (int i = 0; i < pass->threads; i++)
+        if (pass->scratch[i].failed)
+            return false;
+    amb_parallel_for(pass->context, pass->tiles_x * pass->tiles_y, tile_job, pass);
+    pass->chunk_count = 0;
+    return true;
+}
+
+/* ---- chunks and batches ----------------------------------------------------------------------------------------- */
+
+/* Bytes a chunk may come to hold: what the batch's budget counts. */
+static size_t chunk_bytes(const amb_pass *pass, uint32_t triangles, uint32_t stride)
+{
+    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
+    return (tiles + 1) * sizeof(uint32_t) +
+           (size_t)triangles * (3 * stride * sizeof(uint32_t) + sizeof(raster_triangle) + 8);
+}
+
+static raster_chunk *next_chunk(amb_pass *pass)
+{
+    size_t before = pass->chunk_capacity;
+    if (!raster_grow(&pass->chunk, &pass->chunk_capacity, pass->chunk_count + 1, sizeof *pass->chunk))
+        return NULL;
+    memset(pass->chunk + before, 0, (pass->chunk_capacity - before) * sizeof *pass->chunk);
+    return &pass->chunk[pass->chunk_count++];
+}
+
+static bool run_draws(amb_pass *pass)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < pass->draw_count; i++) {
+        const raster_draw *draw = &pass->draw[i];
+        uint32_t stride = (4 + (uint32_t)draw->state.varying_floats + 3) & ~3u;
+        uint64_t first = 0;
+        if (draw->state.vertex && draw->triangles == 0)
+            continue;
+        do {
+            uint64_t left = draw->triangles - first;
+            uint32_t count = left < RASTER_CHUNK_TRIANGLES ? (uint32_t)left : RASTER_CHUNK_TRIANGLES;
+            size_t more = chunk_bytes(pass, count, stride);
+            if (pass->chunk_count == RASTER_BATCH_CHUNKS ||
+                (pass->chunk_count > 0 && bytes + more > RASTER_BATCH_BYTES)) {
+                if (!run_batch(pass))
+                    return false;
+                bytes = 0;
+            }
+            raster_chunk *chunk = next_chunk(pass);
+            if (!chunk)
+                return false;
+            bytes += more;
+            chunk->draw = draw;
+            chunk->first = first;
+            chunk->count = count;
+            chunk->stride = stride;
+            chunk->vertex_count = chunk->triangle_count = chunk->large_count = 0;
+            first += count;
+        } while (first < draw->triangles);
+    }
+    return run_batch(pass);
+}
+
+/* ---- finish ----------------------------------------------------------------------------------------------------- */
+
+static void clear_image(const amb_pass *pass, const amb_image *image, int x0, int y0, const float *value)
+{
+    int x1 = x0 + pass->tile_size < pass->width ? x0 + pass->tile_size : pass->width;
+    int y1 = y0 + pass->tile_size < pass->height ? y0 + pass->tile_size : pass->height;
+    for (int c = 0; c < image->channels; c++)
+        for (int y = y0; y < y1; y++) {
+            float *row = amb_image_row(image, c, y);
+            for (int x = x0; x < x1; x++)
+                row[x] = value[c];
+        }
+}
+
+/* A tile no draw touched gets its clear values. */
+static void clear_job(void *user, int index, int thread)
+{
+    (void)thread;
+    const amb_pass *pass = user;
+    if (pass->tile_started[index])
+        return;
+    int x0 = index % pass->tiles_x * pass->tile_size, y0 = index / pass->tiles_x * pass->tile_size;
+    for (int i = 0; i < pass->target_count; i++)
+        clear_image(pass, pass->target.color[i], x0, y0, &pass->target.clear_color[i].x);
+    if (pass->target.depth)
+        clear_image(pass, pass->target.depth, x0, y0, &pass->target.clear_depth);
+}
+
+static void sum_stats(const amb_pass *pass, amb_pass_stats *sum)
+{
+    *sum = (amb_pass_stats){0};
+    for (size_t i = 0; i < pass->draw_count; i++)
+        sum->triangles_in += pass->draw[i].triangles;
+    for (int i = 0; i < pass->threads; i++) {
+        const amb_pass_stats *s = &pass->scratch[i].stats;
+        sum->vertices += s->vertices;
+        sum->triangles_clipped += s->triangles_clipped;
+        sum->triangles_culled += s->triangles_culled;
+        sum->triangles_binned += s->triangles_binned;
+        sum->blocks_shaded += s->blocks_shaded;
+        sum->fragments_shaded += s->fragments_shaded;
+    }
+}
+
+amb_status amb_pass_finish(amb_pass **pass, amb_pass_stats *stats, amb_error *error)
+{
+    if (!pass || !*pass)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "pass: none is given to finish");
+    amb_pass *p = *pass;
+    bool done = make_workers(p) && run_draws(p);
+    if (done && !p->target.keep)
+        amb_parallel_for(p->context, p->tiles_x * p->tiles_y, clear_job, p);
+    if (done && stats)
+        sum_stats(p, stats);
+    amb_pass_close(pass);
+    return done ? AMB_OK : amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory while running it");
+}

@@ -1,0 +1,135 @@
+/* What the rasterizer's stages share. The way of a triangle:
+ *
+ *   pass.c        records draws, checks them, cuts them into chunks, runs batches of chunks, then the tiles
+ *   vertex_wide.c shades a chunk's vertices, each once, and takes them to the window
+ *   setup.c       drops, culls, clips (clip.c) and bounds the chunk's triangles
+ *   bin.c         sorts them into the tiles they touch
+ *   tile_wide.c   plays all chunks of a batch over one tile: coverage, then fragment.h: depth, shading, blending
+ *
+ * A batch is bounded in bytes, so memory does not grow with the number of triangles. */
+#ifndef AMBIANCE_RASTER_INTERNAL_H
+#define AMBIANCE_RASTER_INTERNAL_H
+
+#include <ambiance/raster.h>
+
+#define RASTER_SUBPIXEL 256 /* fixed-point steps a pixel */
+#define RASTER_GUARD_PIXELS \
+    262144.0 /* the guard band reaches at most this far from the window's centre, at least half */
+#define RASTER_CHUNK_TRIANGLES 4096 /* triangles a chunk, before clipping */
+#define RASTER_CHUNK_VERTICES (3 * RASTER_CHUNK_TRIANGLES)
+#define RASTER_POLYGON 9      /* vertices of a triangle clipped by six planes */
+#define RASTER_LARGE_TILES 16 /* triangles on more tiles than this are not binned but offered to every tile */
+#define RASTER_MAX_TILE 128   /* pixels, tile edge */
+#define RASTER_BATCH_CHUNKS 2048
+#define RASTER_BATCH_BYTES ((size_t)128 << 20)
+
+/* Clip codes of a vertex. */
+enum {
+    RASTER_NEAR = 1,
+    RASTER_FAR = 2,
+    RASTER_LEFT = 4,
+    RASTER_RIGHT = 8,
+    RASTER_BOTTOM = 16,
+    RASTER_TOP = 32,
+    RASTER_INVALID = 64, /* NaN, infinite or w = 0: takes its triangles with it */
+};
+
+typedef struct raster_draw {
+    amb_draw state;
+    void *uniforms;        /* owned copy; NULL when there are none */
+    uint32_t per_instance; /* triangles */
+    uint64_t triangles;    /* of all instances; 0 for full-screen draws */
+} raster_draw;
+
+/* A vertex after the vertex stage; the varyings follow, and padding to a multiple of four words. */
+typedef struct raster_vertex {
+    int32_t x, y; /* window, 1/256 pixel */
+    float z;      /* depth 0…1 */
+    float inverse_w;
+    float varying[];
+} raster_vertex;
+
+typedef struct raster_triangle {
+    uint32_t v[3];            /* ordered so that the doubled area is positive with y down */
+    uint32_t primitive_front; /* running number in the draw, top bit: front face */
+    uint16_t x0, y0, x1, y1;  /* inclusive bounds of pixels whose centres may be covered, inside the target */
+} raster_triangle;
+
+typedef struct raster_chunk {
+    const raster_draw *draw;
+    uint64_t first; /* triangle of the draw */
+    uint32_t count; /* triangles; 0: a full-screen draw */
+
+    uint32_t *vertex; /* raster_vertex records of `stride` words each */
+    uint32_t stride, vertex_count;
+    size_t vertex_capacity; /* words */
+    raster_triangle *triangle;
+    uint32_t triangle_count;
+    size_t triangle_capacity;
+    uint32_t *tile_start; /* tiles + 1: where each tile's entries start */
+    size_t tile_capacity;
+    uint16_t *entry; /* triangle numbers, tile by tile, ascending */
+    size_t entry_capacity;
+    uint16_t *large; /* ascending */
+    size_t large_capacity;
+    uint32_t large_count;
+} raster_chunk;
+
+/* One worker's own memory. */
+typedef struct raster_scratch {
+    uint64_t *lookup; /* index → local vertex: key, generation, local number */
+    uint32_t generation;
+    int32_t *index, *instance; /* of the chunk's unique vertices, padded to the lanes */
+    float *clip_x, *clip_y, *clip_z, *clip_w;
+    uint8_t *code;
+    uint32_t *corner; /* 4 words a triangle: three local vertices, running number */
+    uint32_t corner_count, unique_count;
+    float *group; /* varyings of one group of vertices, as the shader writes them */
+    float *tile;  /* colour and depth of one tile, block by block */
+    bool failed;  /* out of memory */
+    amb_pass_stats stats;
+} raster_scratch;
+
+struct amb_pass {
+    const amb_context *context;
+    amb_target target;
+    int width, height;
+    int target_count;
+    int channel_first[AMB_MAX_TARGETS]; /* plane of an attachment's first channel; plane 0 is depth */
+    int planes;
+    int tile_size, tiles_x, tiles_y;
+    float guard_x, guard_y;
+    uint8_t *tile_started; /* per tile: its images hold pixels of this pass */
+
+    raster_draw *draw;
+    size_t draw_count, draw_capacity;
+
+    raster_chunk *chunk;
+    size_t chunk_count, chunk_capacity; /* of the batch being run; those above keep their memory for the next */
+    raster_scratch *scratch;
+    int threads;
+};
+
+/* Doubling growth of an array to at least `needed` elements; false when out of memory. */
+bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_bytes);
+
+void raster_collect(const raster_chunk *chunk, raster_scratch *scratch);
+void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
+void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
+
+typedef struct raster_polygon {
+    int count;
+    struct {
+        double clip[4];   /* x, y, z, w */
+        double weight[2]; /* of the triangle's corners 1 and 2 */
+        int corner;       /* 0…2: an original corner, -1: a new vertex */
+    } vertex[RASTER_POLYGON];
+} raster_polygon;
+/* Cuts the polygon with the planes named in `codes`, in the order of their bits. */
+void raster_clip(raster_polygon *polygon, unsigned codes, double guard_x, double guard_y);
+
+/* The tests' knob: begins a pass with a given tile edge (16, 32, 64 or 128). Pixels do not depend on it. */
+amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, amb_pass **out,
+                             amb_error *error);
+
+#endif

@@ -1,0 +1,133 @@
+/* Triangle set-up: drop, cull, clip, orient and bound. What is left of a triangle is three vertex numbers and a box of
+ * pixels; edge functions are made per tile. */
+#include <raster/internal.h>
+
+static raster_vertex *vertex_at(const raster_chunk *chunk, uint32_t i)
+{
+    return (raster_vertex *)(void *)(chunk->vertex + (size_t)i * chunk->stride);
+}
+
+static int32_t min3(int32_t a, int32_t b, int32_t c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
+static int32_t max3(int32_t a, int32_t b, int32_t c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
+
+/* First and last pixel whose centre lies in [lo, hi] (1/256 pixel). */
+static int32_t first_pixel(int32_t lo) { return (lo + 127) >> 8; }
+static int32_t last_pixel(int32_t hi) { return (hi - 128) >> 8; }
+
+/* Culls and bounds the window triangle and appends what remains. The array has room. */
+static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, const uint32_t v[3],
+                         uint32_t primitive)
+{
+    const amb_draw *draw = &chunk->draw->state;
+    const raster_vertex *a = vertex_at(chunk, v[0]), *b = vertex_at(chunk, v[1]), *c = vertex_at(chunk, v[2]);
+    int64_t area = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
+    bool front = (area > 0) == draw->front_clockwise; /* y points down: positive is clockwise on the screen */
+    int32_t x0 = first_pixel(min3(a->x, b->x, c->x)), x1 = last_pixel(max3(a->x, b->x, c->x));
+    int32_t y0 = first_pixel(min3(a->y, b->y, c->y)), y1 = last_pixel(max3(a->y, b->y, c->y));
+    x0 = x0 > 0 ? x0 : 0, y0 = y0 > 0 ? y0 : 0;
+    x1 = x1 < pass->width - 1 ? x1 : pass->width - 1, y1 = y1 < pass->height - 1 ? y1 : pass->height - 1;
+    if (area == 0 || x0 > x1 || y0 > y1 || (draw->cull == AMB_CULL_BACK && !front) ||
+        (draw->cull == AMB_CULL_FRONT && front)) {
+        scratch->stats.triangles_culled++;
+        return;
+    }
+    raster_triangle *t = &chunk->triangle[chunk->triangle_count++];
+    t->v[0] = v[0];
+    t->v[1] = area > 0 ? v[1] : v[2];
+    t->v[2] = area > 0 ? v[2] : v[1];
+    t->primitive_front = primitive | (front ? 1u << 31 : 0u);
+    t->x0 = (uint16_t)x0, t->y0 = (uint16_t)y0, t->x1 = (uint16_t)x1, t->y1 = (uint16_t)y1;
+}
+
+/* ---- the clipped ones ------------------------------------------------------------------------------------------- */
+
+/* Window coordinates rounded half to even, as the vertex stage does. */
+static int32_t snap(float ndc, float scale, float offset)
+{
+    return (int32_t)f_round((ndc * scale + offset) * (float)RASTER_SUBPIXEL);
+}
+
+/* Appends a vertex made by clipping; false when it lands nowhere. The array has room. */
+static bool make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_t corner[3], const double clip[4],
+                        const double weight[2], uint32_t *number)
+{
+    float x = (float)clip[0], y = (float)clip[1], z = (float)clip[2], w = (float)clip[3];
+    if (!(w >= FLT_MIN) || !f_is_finite(x) || !f_is_finite(y) || !f_is_finite(z) || !f_is_finite(w))
+        return false;
+    float half_w = 0.5f * (float)pass->width, half_h = 0.5f * (float)pass->height;
+    *number = chunk->vertex_count++;
+    raster_vertex *v = vertex_at(chunk, *number);
+    v->x = snap(x / w, half_w, half_w);
+    v->y = snap(y / w, -half_h, half_h);
+    v->z = z / w;
+    v->inverse_w = 1.0f / w;
+    const raster_vertex *a = vertex_at(chunk, corner[0]), *b = vertex_at(chunk, corner[1]),
+                        *c = vertex_at(chunk, corner[2]);
+    for (int k = 0; k < chunk->draw->state.varying_floats; k++) {
+        double base = (double)a->varying[k];
+        v->varying[k] =
+            (float)(base + ((double)b->varying[k] - base) * weight[0] + ((double)c->varying[k] - base) * weight[1]);
+    }
+    return true;
+}
+
+static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, const uint32_t corner[4],
+                          unsigned codes)
+{
+    raster_polygon polygon = {.count = 3};
+    for (int i = 0; i < 3; i++) {
+        uint32_t v = corner[i];
+        polygon.vertex[i].clip[0] = (double)scratch->clip_x[v];
+        polygon.vertex[i].clip[1] = (double)scratch->clip_y[v];
+        polygon.vertex[i].clip[2] = (double)scratch->clip_z[v];
+        polygon.vertex[i].clip[3] = (double)scratch->clip_w[v];
+        polygon.vertex[i].weight[0] = i == 1, polygon.vertex[i].weight[1] = i == 2;
+        polygon.vertex[i].corner = i;
+    }
+    raster_clip(&polygon, codes, (double)pass->guard_x, (double)pass->guard_y);
+    scratch->stats.triangles_clipped++;
+    size_t words = ((size_t)chunk->vertex_count + RASTER_POLYGON) * chunk->stride;
+    if (!raster_grow(&chunk->vertex, &chunk->vertex_capacity, words, sizeof *chunk->vertex) ||
+        !raster_grow(&chunk->triangle, &chunk->triangle_capacity, chunk->triangle_count + (size_t)RASTER_POLYGON,
+                     sizeof *chunk->triangle))
+        return false;
+    uint32_t number[RASTER_POLYGON];
+    for (int i = 0; i < polygon.count; i++) {
+        if (polygon.vertex[i].corner >= 0)
+            number[i] = corner[polygon.vertex[i].corner];
+        else if (!make_vertex(pass, chunk, corner, polygon.vertex[i].clip, polygon.vertex[i].weight, &number[i])) {
+            scratch->stats.triangles_culled++;
+            return true;
+        }
+    }
+    for (int i = 2; i < polygon.count; i++)
+        add_triangle(pass, chunk, scratch, (uint32_t[3]){number[0], number[i - 1], number[i]}, corner[3]);
+    return true;
+}
+
+void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
+{
+    if (!raster_grow(&chunk->triangle, &chunk->triangle_capacity, scratch->corner_count, sizeof *chunk->triangle)) {
+        scratch->failed = true;
+        return;
+    }
+    for (uint32_t i = 0; i < scratch->corner_count; i++) {
+        const uint32_t *corner = scratch->corner + (size_t)i * 4;
+        unsigned c0 = scratch->code[corner[0]], c1 = scratch->code[corner[1]], c2 = scratch->code[corner[2]];
+        unsigned any = c0 | c1 | c2;
+        if (any == 0) {
+            if (!raster_grow(&chunk->triangle, &chunk->triangle_capacity, chunk->triangle_count + (size_t)1,
+                             sizeof *chunk->triangle)) {
+                scratch->failed = true;
+                return;
+            }
+            add_triangle(pass, chunk, scratch, corner, corner[3]);
+        } else if ((any & RASTER_INVALID) != 0 || (c0 & c1 & c2) != 0) {
+            scratch->stats.triangles_culled++;
+        } else if (!clip_triangle(pass, chunk, scratch, corner, any)) {
+            scratch->failed = true;
+            return;
+        }
+    }
+    scratch->stats.triangles_binned += chunk->triangle_count;
+}
