@@ -1,6 +1,7 @@
 /* amb_read_exr: the first part of a flat OpenEXR file, scanline or tiled (level 0). */
 #include "io/file.h"
 
+#include <ambiance/half.h>
 #include <openexr.h>
 
 #include <stdio.h>
@@ -75,11 +76,6 @@ static amb_status check(exr_reader *reader, exr_result_t code)
 /* Refuses what cannot be read before memory is taken for it. */
 static amb_status check_part(exr_reader *reader)
 {
-    static const char *const lossy[] = {[EXR_COMPRESSION_PXR24] = "PXR24",
-                                        [EXR_COMPRESSION_B44] = "B44",
-                                        [EXR_COMPRESSION_B44A] = "B44A",
-                                        [EXR_COMPRESSION_DWAA] = "DWAA",
-                                        [EXR_COMPRESSION_DWAB] = "DWAB"};
     exr_storage_t storage;
     exr_compression_t compression;
     amb_status status = check(reader, exr_get_storage(reader->context, 0, &storage));
@@ -91,11 +87,11 @@ static amb_status check_part(exr_reader *reader)
         return status;
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
         return amb_fail(reader->error, AMB_ERROR_FORMAT, "%s: deep EXR; only flat images are read", reader->name);
-    if (compression >= EXR_COMPRESSION_PXR24)
+    if (compression >= EXR_COMPRESSION_DWAA)
         return amb_fail(reader->error, AMB_ERROR_FORMAT,
-                        "%s: EXR compressed with %s; allowed are none, RLE, ZIPS, ZIP and PIZ "
+                        "%s: EXR compressed with DWA; allowed are none, RLE, ZIPS, ZIP, PIZ, PXR24, B44 and B44A "
                         "(rewrite it: exrmaketiled -z zip in.exr out.exr)",
-                        reader->name, compression < EXR_COMPRESSION_LAST_TYPE ? lossy[compression] : "?");
+                        reader->name);
     const exr_attr_box2i_t *w = &reader->window;
     int64_t width = (int64_t)w->max.x - w->min.x + 1, height = (int64_t)w->max.y - w->min.y + 1;
     if (width < 1 || height < 1)
@@ -250,7 +246,7 @@ static amb_status unpack_chunk(exr_reader *reader, const exr_decode_pipeline_t *
                 for (int k = 0; k < chunk->width; k++, from += 2) {
                     uint16_t half;
                     memcpy(&half, from, sizeof half);
-                    to[k] = amb_float_from_half(half);
+                    to[k] = half_to_f(half);
                 }
             } else if (channel->type == EXR_PIXEL_FLOAT) {
                 memcpy(to, from, (size_t)chunk->width * sizeof *to);

@@ -1,6 +1,7 @@
 /* amb_write_exr: one scanline part, ZIP (16 lines a chunk), chunks from the top. */
 #include "io/file.h"
 
+#include <ambiance/half.h>
 #include <openexr.h>
 
 #include <stdio.h>
@@ -137,7 +138,7 @@ static void set_chunk_source(exr_writer *writer, int y, int lines)
         for (int line = 0; line < lines; line++) {
             const float *from = amb_image_row(plane->image, plane->channel, y + line);
             for (int x = 0; x < width; x++)
-                *to++ = amb_half_from_float(from[x]);
+                *to++ = (uint16_t)f_to_half(from[x]);
         }
     }
 }

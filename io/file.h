@@ -1,4 +1,4 @@
-/* Inside io/: whole files into memory, readers over memory (what the fuzz targets call), and half floats.
+/* Inside io/: whole files into memory, and readers over memory (what the fuzz targets call).
  * `name` is only for messages. Readers over memory have the errors of their path forms, less IO. */
 #ifndef AMBIANCE_IO_FILE_H
 #define AMBIANCE_IO_FILE_H
@@ -39,43 +39,5 @@ amb_file_kind amb_file_kind_of(const uint8_t *data, size_t bytes);
 amb_status amb_check_png(const uint8_t *data, size_t bytes, const char *name, amb_error *error);
 amb_status amb_check_jpeg(const uint8_t *data, size_t bytes, const char *name, amb_error *error);
 amb_status amb_check_hdr(const uint8_t *data, size_t bytes, const char *name, amb_error *error);
-
-/* IEEE 754 binary16, round to nearest even, NaN stays NaN; exact back. */
-static inline uint16_t amb_half_from_float(float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    uint32_t sign = bits >> 16 & 0x8000u;
-    bits &= 0x7fffffffu;
-    if (bits > 0x7f800000u) /* NaN: keep the top of its payload, never let it become infinity */
-        return (uint16_t)(sign | 0x7e00u | (bits >> 13 & 0x3ffu));
-    if (bits >= 0x477ff000u) /* 65520 and above round to infinity */
-        return (uint16_t)(sign | 0x7c00u);
-    if (bits < 0x38800000u) { /* below 2⁻¹⁴: adding ½ puts the last kept bit at the float's last bit */
-        float magnitude;
-        memcpy(&magnitude, &bits, sizeof magnitude);
-        magnitude += 0.5f;
-        memcpy(&bits, &magnitude, sizeof bits);
-        return (uint16_t)(sign | (bits - 0x3f000000u));
-    }
-    return (uint16_t)(sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1u)) >> 13);
-}
-
-static inline float amb_float_from_half(uint16_t half)
-{
-    uint32_t sign = (uint32_t)(half & 0x8000u) << 16, magnitude = half & 0x7fffu, bits;
-    float value;
-    if (magnitude >= 0x7c00u)
-        bits = sign | 0x7f800000u | (magnitude & 0x3ffu) << 13;
-    else if (magnitude >= 0x400u)
-        bits = sign | ((magnitude << 13) + 0x38000000u);
-    else { /* zero and subnormals: exact as a multiple of 2⁻²⁴ */
-        value = (float)magnitude * 5.9604644775390625e-8f;
-        memcpy(&bits, &value, sizeof bits);
-        bits |= sign;
-    }
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
 
 #endif

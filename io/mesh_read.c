@@ -92,7 +92,7 @@ typedef struct mesh_sums {
 
 static bool is_used(const struct aiMesh *part)
 {
-    return part->mNumVertices > 0 && part->mNumFaces > 0 && part->mPrimitiveTypes == aiPrimitiveType_TRIANGLE;
+    return part->mNumVertices > 0 && part->mNumFaces > 0 && (part->mPrimitiveTypes & 0xfu) == aiPrimitiveType_TRIANGLE;
 }
 
 static mesh_sums sum_parts(const struct aiScene *scene)

@@ -17,7 +17,7 @@ AMB_INLINE f32x half_to_f(u32x half)
     return (f32x)_mm256_cvtph_ps(_mm256_castsi256_si128(_mm256_permute4x64_epi64(pairs, 0x08)));
 #else
     i32x h = u_as_i(half);
-    i32x sign = (h & 0x8000) << 16, magnitude = h & 0x7fff;
+    i32x sign = u_as_i((half & 0x8000u) << 16), magnitude = h & 0x7fff;
     f32x small = i_to_f(magnitude) * 0x1p-24f;
     i32x normal = (magnitude << 13) + (112 << 23);
     i32x special = (magnitude << 13) | 0x7f800000 | i_sel(magnitude > 0x7c00, i_set(0x00400000), i_set(0));

@@ -13,7 +13,7 @@ typedef enum amb_pixel_type { AMB_HALF, AMB_FLOAT } amb_pixel_type;
 /* OpenEXR, ZIP, one part: "color" as R G B A, other layers as NAME.R/G/B/A (3-4 channels), NAME.X/Y… for 1-2 (see
  * docs); metadata as attributes; no clock: equal frames are equal files. Errors: IO, MEMORY. */
 amb_status amb_write_exr(const amb_frame *frame, const char *path, amb_pixel_type type, amb_error *error);
-/* Scanline or tiled (level 0), any lossless compression the library has; DWA is refused (FORMAT). Channels group into
+/* Scanline or tiled (level 0), any compression but DWA, which is refused (FORMAT). Channels group into
  * layers by their prefix. Errors: IO, FORMAT, LIMIT, MEMORY. */
 amb_status amb_read_exr(const char *path, amb_frame **out, amb_error *error);
 
