@@ -1,7 +1,7 @@
 /* The chain: reads its text, and applies passes in order, fusing streaming passes into one sweep over memory. */
 #include "post/scratch.h"
 
-#include "core/suggest.h"
+#include "core/names.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -22,7 +22,7 @@ struct amb_chain {
     const amb_context *context;
     link link[AMB_MAX_CHAIN];
     int count;
-    idle *idle;          /* guarded by lock; apart, so that applying leaves the chain const */
+    idle *idle; /* guarded by lock; apart, so that applying leaves the chain const */
     omp_lock_t *lock;
 };
 
@@ -37,14 +37,16 @@ static char *trim(char *text)
     return text;
 }
 
+static const char *pass_name(const void *isa, int index)
+{
+    return amb_post_by_index(*(const amb_isa *)isa, index)->name;
+}
+
 static amb_status unknown_pass(amb_isa isa, const char *name, amb_error *error)
 {
-    amb_names names = {.wanted = name};
     char hint[320];
-    for (int i = 0; i < amb_post_count(); i++)
-        amb_names_offer(&names, amb_post_by_index(isa, i)->name);
-    return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown post pass '%.64s'; %s", name,
-                    amb_names_hint(&names, hint, sizeof hint));
+    return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown post pass: %.64s; %s", name,
+                    amb_names_hint(name, amb_post_count(), pass_name, &isa, hint, sizeof hint));
 }
 
 /* Cuts the next "name=value" off *rest: up to the comma before the next name, so that x,y,z stays together. */
@@ -75,8 +77,8 @@ static amb_status read_settings(const link *made, char *text, amb_error *error)
         if (!equals || equals == setting)
             return amb_fail(error, AMB_ERROR_ARGUMENT, "%s: '%.80s' is not name=value", owner, setting);
         *equals = '\0';
-        amb_status status = amb_params_set(&made->pass->params, made->params, owner, trim(setting), trim(equals + 1),
-                                           error);
+        amb_status status =
+            amb_params_set(&made->pass->params, made->params, owner, trim(setting), trim(equals + 1), error);
         if (status != AMB_OK)
             return status;
     }
@@ -219,8 +221,7 @@ static void play_band(void *user, int band, int thread)
     int columns = (int)color->stride;
     for (int y = y0; y < y1 && s->count; y++)
         for (int x = 0; x < columns; x += AMB_POST_SPAN) {
-            amb_post_span span = {
-                .x = x, .y = y, .count = columns - x < AMB_POST_SPAN ? columns - x : AMB_POST_SPAN};
+            amb_post_span span = {.x = x, .y = y, .count = columns - x < AMB_POST_SPAN ? columns - x : AMB_POST_SPAN};
             for (int c = 0; c < 3; c++)
                 span.rgb[c] = amb_image_row(color, c, y) + x;
             for (int i = 0; i < s->count; i++)

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#define PASSES(X)                                                                                                     \
-    X(bloom)                                                                                                          \
+#define PASSES(X) \
+    X(bloom)      \
     X(display)
 
 #if defined(__x86_64__)

@@ -87,8 +87,7 @@ void *amb_scratch_take(amb_scratch *scratch, size_t count, size_t size)
 amb_status amb_scratch_swap(amb_scratch *scratch, amb_image *image, amb_image *old, amb_error *error)
 {
     amb_image *spare = scratch->spare;
-    if (spare &&
-        (spare->width != image->width || spare->height != image->height || spare->channels != image->channels))
+    if (spare && (spare->width != image->width || spare->height != image->height || spare->channels != image->channels))
         amb_image_close(&scratch->spare);
     if (!scratch->spare) {
         amb_status status = amb_image_create(image->width, image->height, image->channels, &scratch->spare, error);
