@@ -1,0 +1,256 @@
+/* Texels into lanes: what the samplers share. Lanes look at different texels, levels and faces; everything here is a
+ * pure function of its own lane.
+ *
+ * A bilinear footprint reads two texels of a row at once (padding keeps them adjacent), so a row costs one load of
+ * 8 to 32 bytes a lane and a transposition, instead of one gather a channel and texel. */
+#ifndef AMBIANCE_CORE_TEXTURE_FETCH_H
+#define AMBIANCE_CORE_TEXTURE_FETCH_H
+
+#include "core/texture_layout.h"
+
+#include <ambiance/half.h>
+
+/* ---- words ------------------------------------------------------------------------------------------------------ */
+
+#if AMB_X86
+/* Words at p[0..1] of lanes a and b, side by side. */
+AMB_INLINE __m128i load_two_pairs(const uint32_t *a, const uint32_t *b)
+{
+    __m128d low = _mm_load_sd((const double *)(const void *)a);
+    return _mm_castpd_si128(_mm_loadh_pd(low, (const double *)(const void *)b));
+}
+AMB_INLINE __m128i load_quad(const uint32_t *p) { return _mm_loadu_si128((const __m128i *)(const void *)p); }
+#endif
+#if AMB_X86 && AMB_LANES == 16
+#define LANES_FROM_BLOCKS_(b0, b1, b2, b3) \
+    _mm512_inserti32x4(_mm512_inserti32x4(_mm512_inserti32x4(_mm512_castsi128_si512(b0), b1, 1), b2, 2), b3, 3)
+#define LANES_SHUFFLE_(a, b, control) ((u32x)_mm512_shuffle_ps(_mm512_castsi512_ps(a), _mm512_castsi512_ps(b), control))
+#define LANES_UNPACK_(part, a, b) _mm512_unpack##part(a, b)
+#define LANES_INT_ __m512i
+#elif AMB_X86 && AMB_LANES == 8
+#define LANES_FROM_BLOCKS_(b0, b1, b2, b3) _mm256_inserti128_si256(_mm256_castsi128_si256(b0), b1, 1)
+#define LANES_SHUFFLE_(a, b, control) ((u32x)_mm256_shuffle_ps(_mm256_castsi256_ps(a), _mm256_castsi256_ps(b), control))
+#define LANES_UNPACK_(part, a, b) _mm256_unpack##part(a, b)
+#define LANES_INT_ __m256i
+#elif AMB_X86
+#define LANES_FROM_BLOCKS_(b0, b1, b2, b3) b0
+#define LANES_SHUFFLE_(a, b, control) ((u32x)_mm_shuffle_ps(_mm_castsi128_ps(a), _mm_castsi128_ps(b), control))
+#define LANES_UNPACK_(part, a, b) _mm_unpack##part(a, b)
+#define LANES_INT_ __m128i
+#endif
+
+/* word[k] = data[index + k], k = 0, 1 */
+AMB_INLINE void fetch_2(const uint32_t *data, i32x index, u32x word[2])
+{
+#if AMB_X86
+    int32_t at[AMB_LANES] __attribute__((aligned(64)));
+    memcpy(at, &index, sizeof at);
+#define PAIRS_(j) load_two_pairs(data + at[(4 * (j)) % AMB_LANES], data + at[(4 * (j) + 1) % AMB_LANES])
+#define PAIRS_2_(j) load_two_pairs(data + at[(4 * (j) + 2) % AMB_LANES], data + at[(4 * (j) + 3) % AMB_LANES])
+    LANES_INT_ low = LANES_FROM_BLOCKS_(PAIRS_(0), PAIRS_(1), PAIRS_(2), PAIRS_(3));
+    LANES_INT_ high = LANES_FROM_BLOCKS_(PAIRS_2_(0), PAIRS_2_(1), PAIRS_2_(2), PAIRS_2_(3));
+    word[0] = LANES_SHUFFLE_(low, high, 0x88);
+    word[1] = LANES_SHUFFLE_(low, high, 0xdd);
+#undef PAIRS_
+#undef PAIRS_2_
+#else
+    word[0] = u_gather(data, index);
+    word[1] = u_gather(data, index + 1);
+#endif
+}
+
+/* word[k] = data[index + k], k = 0…3 */
+AMB_INLINE void fetch_4(const uint32_t *data, i32x index, u32x word[4])
+{
+#if AMB_X86
+    int32_t at[AMB_LANES] __attribute__((aligned(64)));
+    memcpy(at, &index, sizeof at);
+#define QUAD_(i, j) load_quad(data + at[(4 * (j) + (i)) % AMB_LANES])
+    LANES_INT_ r0 = LANES_FROM_BLOCKS_(QUAD_(0, 0), QUAD_(0, 1), QUAD_(0, 2), QUAD_(0, 3));
+    LANES_INT_ r1 = LANES_FROM_BLOCKS_(QUAD_(1, 0), QUAD_(1, 1), QUAD_(1, 2), QUAD_(1, 3));
+    LANES_INT_ r2 = LANES_FROM_BLOCKS_(QUAD_(2, 0), QUAD_(2, 1), QUAD_(2, 2), QUAD_(2, 3));
+    LANES_INT_ r3 = LANES_FROM_BLOCKS_(QUAD_(3, 0), QUAD_(3, 1), QUAD_(3, 2), QUAD_(3, 3));
+#undef QUAD_
+    LANES_INT_ a = LANES_UNPACK_(lo_epi32, r0, r1), b = LANES_UNPACK_(lo_epi32, r2, r3);
+    LANES_INT_ c = LANES_UNPACK_(hi_epi32, r0, r1), d = LANES_UNPACK_(hi_epi32, r2, r3);
+    word[0] = (u32x)LANES_UNPACK_(lo_epi64, a, b);
+    word[1] = (u32x)LANES_UNPACK_(hi_epi64, a, b);
+    word[2] = (u32x)LANES_UNPACK_(lo_epi64, c, d);
+    word[3] = (u32x)LANES_UNPACK_(hi_epi64, c, d);
+#else
+    for (int k = 0; k < 4; k++)
+        word[k] = u_gather(data, index + k);
+#endif
+}
+
+/* ---- colours ---------------------------------------------------------------------------------------------------- */
+
+/* Channels that a storage holds; the rest are filled in by finish_color. */
+AMB_INLINE int storage_channels(texture_storage store) { return store == STORE_FLOAT1 ? 1 : 4; }
+
+typedef struct {
+    f32x c[4];
+} colorx; /* as stored: UNORM8 in 0…255 */
+
+AMB_INLINE void decode_words(texture_storage store, const u32x *word, colorx *out)
+{
+    switch (store) {
+    case STORE_UNORM8:
+        for (int k = 0; k < 4; k++)
+            out->c[k] = i_to_f(u_as_i(word[0] >> (unsigned)(8 * k) & 255u));
+        break;
+    case STORE_HALF4:
+        for (int k = 0; k < 4; k++)
+            out->c[k] = half_to_f(k & 1 ? word[k >> 1] >> 16 : word[k >> 1] & 0xffffu);
+        break;
+    case STORE_FLOAT1:
+        out->c[0] = f_from_bits(u_as_i(word[0]));
+        break;
+    case STORE_FLOAT4:
+        for (int k = 0; k < 4; k++)
+            out->c[k] = f_from_bits(u_as_i(word[k]));
+        break;
+    }
+}
+
+AMB_INLINE void fetch_texel(const amb_texture *t, texture_storage store, i32x texel, colorx *out)
+{
+    u32x word[4];
+    if (store == STORE_FLOAT4)
+        fetch_4(t->data, texel * 4, word);
+    else if (store == STORE_HALF4)
+        fetch_2(t->data, texel * 2, word);
+    else
+        word[0] = u_gather(t->data, texel);
+    decode_words(store, word, out);
+}
+
+/* A texel and the next one of its row. */
+AMB_INLINE void fetch_pair(const amb_texture *t, texture_storage store, i32x texel, colorx *a, colorx *b)
+{
+    u32x word[8];
+    int words = storage_words(store);
+    if (store == STORE_FLOAT4) {
+        fetch_4(t->data, texel * 4, word);
+        fetch_4(t->data, texel * 4 + 4, word + 4);
+    } else if (store == STORE_HALF4) {
+        fetch_4(t->data, texel * 2, word);
+    } else {
+        fetch_2(t->data, texel, word);
+    }
+    decode_words(store, word, a);
+    decode_words(store, word + words, b);
+}
+
+AMB_INLINE void lerp_colors(texture_storage store, const colorx *a, const colorx *b, f32x t, colorx *out)
+{
+    for (int k = 0; k < storage_channels(store); k++)
+        out->c[k] = f_lerp(a->c[k], b->c[k], t);
+}
+
+/* Bilinear over the 2×2 texels from `texel` on. */
+AMB_INLINE void fetch_bilinear(const amb_texture *t, texture_storage store, i32x texel, i32x pitch, f32x fx, f32x fy,
+                               colorx *out)
+{
+    colorx a, b, top, bottom;
+    fetch_pair(t, store, texel, &a, &b);
+    lerp_colors(store, &a, &b, fx, &top);
+    fetch_pair(t, store, texel + pitch, &a, &b);
+    lerp_colors(store, &a, &b, fx, &bottom);
+    lerp_colors(store, &top, &bottom, fy, out);
+}
+
+AMB_INLINE v4x finish_color(texture_storage store, const colorx *c)
+{
+    if (store == STORE_FLOAT1)
+        return (v4x){c->c[0], f_set(0.0f), f_set(0.0f), f_set(1.0f)};
+    float scale = store == STORE_UNORM8 ? 1.0f / 255.0f : 1.0f;
+    return (v4x){c->c[0] * scale, c->c[1] * scale, c->c[2] * scale, c->c[3] * scale};
+}
+
+/* ---- levels ----------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    i32x base, pitch, slice;
+    f32x width, height, depth;
+} levelx;
+
+/* table[index] of a sixteen-entry table. */
+AMB_INLINE i32x lookup_level(const void *table, i32x index)
+{
+#if AMB_X86 && AMB_LANES == 16
+    return (i32x)_mm512_permutexvar_epi32((__m512i)index, _mm512_loadu_si512(table));
+#else
+    return i_gather(table, index);
+#endif
+}
+
+AMB_INLINE levelx level_at(const amb_texture *t, i32x level)
+{
+    int first = i_lane(level, 0);
+    if (m_all(level == first))
+        return (levelx){i_set(t->base[first]),  i_set(t->pitch[first]),  i_set(t->slice[first]),
+                        f_set(t->width[first]), f_set(t->height[first]), f_set(t->depth[first])};
+    return (levelx){lookup_level(t->base, level),
+                    lookup_level(t->pitch, level),
+                    lookup_level(t->slice, level),
+                    f_from_bits(lookup_level(t->width, level)),
+                    f_from_bits(lookup_level(t->height, level)),
+                    f_from_bits(lookup_level(t->depth, level))};
+}
+
+/* log2 of a non-negative float for levels of detail: exact at powers of two, within 1e-4 elsewhere; ≤ -127 at 0. */
+AMB_INLINE f32x lod_log2(f32x a)
+{
+    i32x bits = f_bits(a);
+    f32x exponent = i_to_f((bits >> 23) - 127);
+    f32x m = f_from_bits((bits & 0x007fffff) | 0x3f800000) - 1.0f; /* log2(1+m) = m + m(1-m)·q(m) */
+    f32x q = 0.4423216f + m * (-0.2690259f + m * (0.1497969f + m * -0.0446463f));
+    return exponent + (m + m * (1.0f - m) * q);
+}
+
+typedef struct {
+    i32x near, far; /* the two levels; equal when only one counts */
+    f32x blend;     /* 0…1 from near to far */
+} lod_levels;
+
+/* The levels of a (biased, then clamped) level of detail; NaN gives the lowest allowed. */
+AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f32x lod)
+{
+    float last = (float)(t->info.levels - 1), top = s->lod_max > 0.0f && s->lod_max < last ? s->lod_max : last;
+    lod = f_clamp(lod + s->lod_bias, f_set(s->lod_min), f_set(top));
+    lod = f_clamp(lod, f_set(0.0f), f_set(last));
+    if (s->filter != AMB_TRILINEAR) {
+        i32x level = f_to_i(lod + 0.5f);
+        return (lod_levels){level, level, f_set(0.0f)};
+    }
+    i32x near = f_to_i(lod);
+    return (lod_levels){near, i_min(near + 1, i_set(t->info.levels - 1)), lod - i_to_f(near)};
+}
+
+/* ---- footprints ------------------------------------------------------------------------------------------------- */
+
+/* From the squared lengths, in texels of level 0, of the pixel's two axes. Isotropic: λ = log2 of the longer one
+ * (OpenGL 4.6 §8.14.1). Anisotropic: N = min(⌈longer / shorter⌉, max), λ = log2(longer / N), N taps along the longer
+ * axis (EXT_texture_filter_anisotropic). */
+typedef struct {
+    f32x lod, taps;
+    maskx along_x;
+} footprintx;
+
+AMB_INLINE footprintx footprint(f32x square_x, f32x square_y, int max_anisotropy)
+{
+    square_x = f_max(square_x, f_set(0.0f)); /* NaN becomes 0 */
+    square_y = f_max(square_y, f_set(0.0f));
+    maskx along_x = square_x >= square_y;
+    f32x longer = f_sel(along_x, square_x, square_y), shorter = f_sel(along_x, square_y, square_x);
+    if (max_anisotropy <= 1)
+        return (footprintx){lod_log2(longer) * 0.5f, f_set(1.0f), along_x};
+    float most = max_anisotropy < 16 ? (float)max_anisotropy : 16.0f;
+    f32x taps = f_clamp(f_ceil(f_sqrt(longer / shorter)), f_set(1.0f), f_set(most));
+    return (footprintx){lod_log2(longer / (taps * taps)) * 0.5f, taps, along_x};
+}
+
+AMB_INLINE f32x finite_or_zero(f32x a) { return f_sel(f_is_finite(a), a, f_set(0.0f)); }
+
+#endif

@@ -1,0 +1,203 @@
+/* Sampling of 2D and 3D textures. One function a storage kind, so that each is straight-line code. */
+#include "core/texture_fetch.h"
+
+/* ---- coordinates ------------------------------------------------------------------------------------------------ */
+
+/* The texel to the left of coordinate u (finite), from -1 to size-1, and the fraction to the next one. */
+AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
+{
+    f32x t;
+    if (wrap == AMB_REPEAT) {
+        t = (u - f_floor(u)) * size - 0.5f;
+    } else {
+        if (wrap == AMB_MIRROR) {
+            f32x pair = u * 0.5f;
+            u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
+        }
+        t = f_clamp(u * size - 0.5f, f_set(0.0f), size - 1.0f);
+    }
+    f32x left = f_floor(t);
+    i32x i = f_to_i(left);
+    *texel = i + ((i >> 31) & f_to_i(size)); /* left of the first comes the last */
+    return t - left;
+}
+
+/* The texel that contains coordinate u. */
+AMB_INLINE i32x wrap_nearest(f32x u, f32x size, amb_wrap wrap)
+{
+    if (wrap == AMB_REPEAT) {
+        u = u - f_floor(u);
+    } else if (wrap == AMB_MIRROR) {
+        f32x pair = u * 0.5f;
+        u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
+    }
+    return f_to_i(f_clamp(u * size, f_set(0.0f), size - 1.0f));
+}
+
+/* ---- 2D --------------------------------------------------------------------------------------------------------- */
+
+/* Where and how to sample: one tap at uv, or `taps` along `axis`. lod is not biased yet. */
+typedef struct {
+    const amb_texture *texture;
+    const amb_sampler *sampler;
+    v2x uv, axis;
+    f32x lod, taps;
+    int most_taps;
+} request_2d;
+
+AMB_INLINE void sample_level_2d(const request_2d *r, texture_storage store, v2x uv, i32x level, colorx *out)
+{
+    levelx l = level_at(r->texture, level);
+    const amb_wrap *wrap = r->sampler->wrap;
+    if (r->sampler->filter == AMB_NEAREST) {
+        i32x x = wrap_nearest(uv.x, l.width, wrap[0]), y = wrap_nearest(uv.y, l.height, wrap[1]);
+        fetch_texel(r->texture, store, l.base + y * l.pitch + x, out);
+        return;
+    }
+    i32x x, y;
+    f32x fx = wrap_linear(uv.x, l.width, wrap[0], &x), fy = wrap_linear(uv.y, l.height, wrap[1], &y);
+    fetch_bilinear(r->texture, store, l.base + y * l.pitch + x, l.pitch, fx, fy, out);
+}
+
+/* A lane between two levels blends them; the second is fetched only when some lane needs it. */
+AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x uv, const lod_levels *levels,
+                                 colorx *out)
+{
+    uv.x = finite_or_zero(uv.x);
+    uv.y = finite_or_zero(uv.y);
+    sample_level_2d(r, store, uv, levels->near, out);
+    maskx between = levels->blend > 0.0f;
+    if (!m_any(between))
+        return;
+    colorx far;
+    sample_level_2d(r, store, uv, levels->far, &far);
+    for (int k = 0; k < storage_channels(store); k++)
+        out->c[k] = f_sel(between, f_lerp(out->c[k], far.c[k], levels->blend), out->c[k]);
+}
+
+AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
+{
+    lod_levels levels = pick_levels(r->texture, r->sampler, r->lod);
+    colorx sum;
+    if (r->most_taps <= 1) {
+        sample_levels_2d(r, store, r->uv, &levels, &sum);
+        return finish_color(store, &sum);
+    }
+    memset(&sum, 0, sizeof sum);
+    for (int i = 1; i <= r->most_taps; i++) {
+        maskx wanted = r->taps >= (float)i;
+        if (!m_any(wanted))
+            break;
+        f32x offset = (float)i / (r->taps + 1.0f) - 0.5f;
+        colorx one;
+        sample_levels_2d(r, store, v2x_add(r->uv, v2x_scale(r->axis, offset)), &levels, &one);
+        for (int k = 0; k < storage_channels(store); k++)
+            sum.c[k] = f_sel(wanted, sum.c[k] + one.c[k], sum.c[k]);
+    }
+    for (int k = 0; k < storage_channels(store); k++)
+        sum.c[k] = sum.c[k] / r->taps;
+    return finish_color(store, &sum);
+}
+
+static __attribute__((noinline)) v4x sample_2d_unorm8(const request_2d *r)
+{
+    return sample_request_2d(r, STORE_UNORM8);
+}
+static __attribute__((noinline)) v4x sample_2d_half4(const request_2d *r) { return sample_request_2d(r, STORE_HALF4); }
+static __attribute__((noinline)) v4x sample_2d_float1(const request_2d *r)
+{
+    return sample_request_2d(r, STORE_FLOAT1);
+}
+static __attribute__((noinline)) v4x sample_2d_float4(const request_2d *r)
+{
+    return sample_request_2d(r, STORE_FLOAT4);
+}
+
+AMB_INLINE v4x sample_2d(const request_2d *r)
+{
+    switch (r->texture->storage) {
+    case STORE_UNORM8:
+        return sample_2d_unorm8(r);
+    case STORE_HALF4:
+        return sample_2d_half4(r);
+    case STORE_FLOAT1:
+        return sample_2d_float1(r);
+    case STORE_FLOAT4:
+        break;
+    }
+    return sample_2d_float4(r);
+}
+
+v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod)
+{
+    request_2d r = {texture, sampler, uv, {f_set(0.0f), f_set(0.0f)}, lod, f_set(1.0f), 1};
+    return sample_2d(&r);
+}
+
+v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy)
+{
+    f32x width = f_set(texture->width[0]), height = f_set(texture->height[0]);
+    v2x dx = v2x_of(ddx.x * width, ddx.y * height), dy = v2x_of(ddy.x * width, ddy.y * height);
+    footprintx f = footprint(v2x_dot(dx, dx), v2x_dot(dy, dy), sampler->max_anisotropy);
+    request_2d r = {texture, sampler, uv, v2x_sel(f.along_x, ddx, ddy), f.lod, f.taps, sampler->max_anisotropy};
+    return sample_2d(&r);
+}
+
+#if AMB_LANES > 1
+v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv)
+{
+    return amb_sample_2d_grad(texture, sampler, uv, v2x_of(f_ddx(uv.x), f_ddx(uv.y)), v2x_of(f_ddy(uv.x), f_ddy(uv.y)));
+}
+#endif
+
+/* ---- 3D --------------------------------------------------------------------------------------------------------- */
+
+AMB_INLINE void sample_level_3d(const amb_texture *t, const amb_sampler *s, texture_storage store, v3x uvw, i32x level,
+                                colorx *out)
+{
+    levelx l = level_at(t, level);
+    if (s->filter == AMB_NEAREST) {
+        i32x x = wrap_nearest(uvw.x, l.width, s->wrap[0]), y = wrap_nearest(uvw.y, l.height, s->wrap[1]);
+        i32x z = wrap_nearest(uvw.z, l.depth, s->wrap[2]);
+        fetch_texel(t, store, l.base + z * l.slice + y * l.pitch + x, out);
+        return;
+    }
+    i32x x, y, z;
+    f32x fx = wrap_linear(uvw.x, l.width, s->wrap[0], &x), fy = wrap_linear(uvw.y, l.height, s->wrap[1], &y);
+    f32x fz = wrap_linear(uvw.z, l.depth, s->wrap[2], &z);
+    i32x at = l.base + z * l.slice + y * l.pitch + x;
+    colorx near, far;
+    fetch_bilinear(t, store, at, l.pitch, fx, fy, &near);
+    fetch_bilinear(t, store, at + l.slice, l.pitch, fx, fy, &far);
+    lerp_colors(store, &near, &far, fz, out);
+}
+
+AMB_INLINE v4x sample_3d(const amb_texture *t, const amb_sampler *s, texture_storage store, v3x uvw, f32x lod)
+{
+    lod_levels levels = pick_levels(t, s, lod);
+    uvw = v3x_of(finite_or_zero(uvw.x), finite_or_zero(uvw.y), finite_or_zero(uvw.z));
+    colorx out, far;
+    sample_level_3d(t, s, store, uvw, levels.near, &out);
+    maskx between = levels.blend > 0.0f;
+    if (m_any(between)) {
+        sample_level_3d(t, s, store, uvw, levels.far, &far);
+        for (int k = 0; k < storage_channels(store); k++)
+            out.c[k] = f_sel(between, f_lerp(out.c[k], far.c[k], levels.blend), out.c[k]);
+    }
+    return finish_color(store, &out);
+}
+
+v4x amb_sample_3d_lod(const amb_texture *texture, const amb_sampler *sampler, v3x uvw, f32x lod)
+{
+    switch (texture->storage) {
+    case STORE_UNORM8:
+        return sample_3d(texture, sampler, STORE_UNORM8, uvw, lod);
+    case STORE_HALF4:
+        return sample_3d(texture, sampler, STORE_HALF4, uvw, lod);
+    case STORE_FLOAT1:
+        return sample_3d(texture, sampler, STORE_FLOAT1, uvw, lod);
+    case STORE_FLOAT4:
+        break;
+    }
+    return sample_3d(texture, sampler, STORE_FLOAT4, uvw, lod);
+}
