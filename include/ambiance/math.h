@@ -58,7 +58,7 @@ AMB_INLINE f32x amb_exp_core_(f32x r)
     return 1.0f + (r + r * r * q);
 }
 
-/* eᵃ, ≤ 1 ULP. Above 88.7228 Inf, below -103.98 zero. */
+/* eᵃ, ≤ 1.05 ULP. Above 88.7228 Inf, below -103.98 zero. */
 AMB_INLINE f32x f_exp(f32x a)
 {
     f32x c = f_max(f_set(-104.5f), f_min(f_set(89.5f), a)); /* in this order a NaN passes */
@@ -68,7 +68,7 @@ AMB_INLINE f32x f_exp(f32x a)
     return amb_scale_(amb_exp_core_(r), f_bits(t) - 0x4b400000);
 }
 
-/* 2ᵃ, ≤ 1 ULP; exact for integers. From 128 Inf, below -150 zero. */
+/* 2ᵃ, ≤ 1.05 ULP; exact for integers. From 128 Inf, below -150 zero. */
 AMB_INLINE f32x f_exp2(f32x a)
 {
     f32x c = f_max(f_set(-151.0f), f_min(f_set(129.0f), a));
