@@ -64,14 +64,14 @@ amb_status amb_show_set(amb_show *show, const char *name, const char *value, amb
 
 static const char *aov_name(const void *user, int index) { return ((const amb_scene *)user)->aovs[index].name; }
 
-/* Marks in wanted[] the scene's AOVs that the NULL-ended names ask for. */
-static amb_status choose_aovs(const amb_scene *scene, const char *const *names, bool *wanted, amb_error *error)
+amb_status amb_scene_choose_aovs(const amb_scene *scene, const char *const *names, bool *wanted, amb_error *error)
 {
     for (; names && *names; names++) {
         bool is_all = strcmp(*names, "all") == 0, is_known = is_all;
         for (size_t i = 0; i < scene->aov_count; i++) {
             bool is_this = strcmp(*names, scene->aovs[i].name) == 0;
-            wanted[i] |= is_all || is_this;
+            if (wanted)
+                wanted[i] |= is_all || is_this;
             is_known |= is_this;
         }
         char hint[320];
@@ -129,7 +129,7 @@ amb_status amb_show_render(const amb_show *show, double time, int width, int hei
     if (scene->aov_count >= AMB_MAX_LAYERS)
         return amb_fail(error, AMB_ERROR_LIMIT, "%s: %zu AOVs; at most %d are allowed", show->owner, scene->aov_count,
                         AMB_MAX_LAYERS - 1);
-    amb_status status = choose_aovs(scene, aovs, wanted, error);
+    amb_status status = amb_scene_choose_aovs(scene, aovs, wanted, error);
     if (status == AMB_OK)
         status = amb_frame_create(width, height, &frame, error);
     for (size_t i = 0; status == AMB_OK && i < scene->aov_count; i++)

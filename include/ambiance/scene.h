@@ -44,6 +44,10 @@ int amb_scene_count(void);
 const amb_scene *amb_scene_by_index(amb_isa isa, int index);
 const amb_scene *amb_scene_by_name(amb_isa isa, const char *name); /* NULL when unknown */
 
+/* Marks in wanted[0…aov_count-1] (may be NULL: only checks) the AOVs that the NULL-ended `names` (NULL: none; "all" for
+ * every one) ask for. Errors: NOT_FOUND. */
+amb_status amb_scene_choose_aovs(const amb_scene *scene, const char *const *names, bool *wanted, amb_error *error);
+
 /* A loaded scene, its parameters and assets: the whole of rendering in three calls. */
 typedef struct amb_show amb_show;
 amb_status amb_show_open(const amb_context *context, amb_assets *assets, const char *scene, amb_show **out,
