@@ -1,8 +1,8 @@
 /* Running a pass: draws are cut into chunks of triangles, chunks gathered into batches of bounded size. A batch goes
  * through the geometry stages, one chunk a job, and then over the tiles, one tile a job. Each tile plays the chunks in
  * order, so primitive order is kept however jobs are spread over threads. */
-#include <core/dispatch.h>
-#include <raster/internal.h>
+#include "core/dispatch.h"
+#include "raster/internal.h"
 
 #include <stdlib.h>
 
@@ -129,7 +129,7 @@ static bool run_draws(amb_pass *pass)
             uint32_t count = left < RASTER_CHUNK_TRIANGLES ? (uint32_t)left : RASTER_CHUNK_TRIANGLES;
             size_t more = chunk_bytes(pass, count, stride);
             if (pass->chunk_count == RASTER_BATCH_CHUNKS ||
-                (pass->chunk_count > 0 && bytes + more > RASTER_BATCH_BYTES)) {
+                (pass->chunk_count > 0 && bytes + more > pass->batch_bytes)) {
                 if (!run_batch(pass))
                     return false;
                 bytes = 0;

@@ -1,6 +1,6 @@
 /* Binning: a counting sort of a chunk's triangles into the tiles their boxes touch, in order. A triangle on many tiles
  * goes to the chunk's list of large ones instead, which every tile looks through: so a chunk's bins stay small. */
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 typedef struct tile_box {
     uint32_t x0, y0, x1, y1;

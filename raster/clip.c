@@ -1,7 +1,7 @@
 /* Clipping a triangle in homogeneous coordinates: Sutherland and Hodgman, "Reentrant polygon clipping", CACM 17(1),
  * 1974, in double precision. An edge is always cut from its inner towards its outer end, so two triangles that share
  * the edge get the same point. */
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 typedef struct plane {
     int axis;    /* of clip: 0 x, 1 y, 2 z */

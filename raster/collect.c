@@ -1,5 +1,5 @@
 /* Gathering a chunk's corners: indices become numbers of the chunk's own vertices, each vertex once. */
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 #define SLOT_BITS 15
 #define LOCAL_BITS 14 /* RASTER_CHUNK_VERTICES fits */

@@ -3,7 +3,7 @@
 #ifndef AMBIANCE_RASTER_FRAGMENT_H
 #define AMBIANCE_RASTER_FRAGMENT_H
 
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 /* A tile being played. Its pixels lie block by block; a block holds `planes` runs of AMB_LANES floats: depth first,
  * then every channel of every attachment. */

@@ -22,6 +22,7 @@
 #define RASTER_MAX_TILE 128   /* pixels, tile edge */
 #define RASTER_BATCH_CHUNKS 2048
 #define RASTER_BATCH_BYTES ((size_t)128 << 20)
+#define RASTER_TILE 64
 
 /* Clip codes of a vertex. */
 enum {
@@ -98,6 +99,7 @@ struct amb_pass {
     int channel_first[AMB_MAX_TARGETS]; /* plane of an attachment's first channel; plane 0 is depth */
     int planes;
     int tile_size, tiles_x, tiles_y;
+    size_t batch_bytes;
     float guard_x, guard_y;
     uint8_t *tile_started; /* per tile: its images hold pixels of this pass */
 
@@ -128,8 +130,9 @@ typedef struct raster_polygon {
 /* Cuts the polygon with the planes named in `codes`, in the order of their bits. */
 void raster_clip(raster_polygon *polygon, unsigned codes, double guard_x, double guard_y);
 
-/* The tests' knob: begins a pass with a given tile edge (16, 32, 64 or 128). Pixels do not depend on it. */
-amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, amb_pass **out,
-                             amb_error *error);
+/* The tests' knobs; pixels depend on neither. tile_size: 16, 32, 64 or 128 pixels; batch_bytes: what a batch may hold
+ * before its tiles are played (0: at least one chunk). */
+amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
+                             amb_pass **out, amb_error *error);
 
 #endif

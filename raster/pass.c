@@ -1,5 +1,5 @@
 /* A pass: the checked record of a target and its draws. Running it is batch.c's part. */
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 #include <stdlib.h>
 
@@ -80,8 +80,8 @@ static float guard_factor(int size)
     return (float)g;
 }
 
-amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, amb_pass **out,
-                             amb_error *error)
+amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
+                             amb_pass **out, amb_error *error)
 {
     if (!out)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "pass: no place for the result is given");
@@ -97,6 +97,7 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
     if (status != AMB_OK)
         goto error;
     pass->tile_size = tile_size;
+    pass->batch_bytes = batch_bytes;
     pass->tiles_x = (pass->width + tile_size - 1) / tile_size;
     pass->tiles_y = (pass->height + tile_size - 1) / tile_size;
     pass->guard_x = guard_factor(pass->width);
@@ -115,7 +116,7 @@ error:
 
 amb_status amb_pass_begin(const amb_context *context, const amb_target *target, amb_pass **out, amb_error *error)
 {
-    return raster_pass_begin(context, target, 64, out, error);
+    return raster_pass_begin(context, target, RASTER_TILE, RASTER_BATCH_BYTES, out, error);
 }
 
 /* "draw 'label': " for messages. */

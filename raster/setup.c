@@ -1,6 +1,6 @@
 /* Triangle set-up: drop, cull, clip, orient and bound. What is left of a triangle is three vertex numbers and a box of
  * pixels; edge functions are made per tile. */
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 static raster_vertex *vertex_at(const raster_chunk *chunk, uint32_t i)
 {

@@ -1,6 +1,6 @@
 /* The tile stage: all chunks of a batch, in order, over one tile. Edge functions are exact integers; a block is
  * rejected or accepted by its corners, and only blocks on an edge are tested pixel by pixel. */
-#include <raster/fragment.h>
+#include "raster/fragment.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* The vertex stage: a chunk's unique vertices are shaded AMB_LANES at a time, classified against the clip planes and,
  * where they need no clipping, taken to the window and snapped to the fixed-point grid. */
-#include <raster/internal.h>
+#include "raster/internal.h"
 
 #define raster_vertices WIDE(raster_vertices)
 void raster_vertices(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);

@@ -1,0 +1,30 @@
+/* Shaders of the rasterizer's tests, one set per instruction set. */
+#ifndef TESTS_RASTER_SHADERS_H
+#define TESTS_RASTER_SHADERS_H
+
+#include <ambiance/raster.h>
+
+typedef struct raster_test_vertex {
+    v4 clip;
+    v4 value; /* handed to the fragment stage */
+} raster_test_vertex;
+
+typedef struct raster_test_uniforms {
+    const raster_test_vertex *vertex;
+    v4 offset;     /* of clip per instance */
+    float discard; /* fragments with value.x below it are discarded (0: none) */
+    float depth;   /* written by the depth-writing shader: depth · this */
+} raster_test_uniforms;
+
+typedef struct raster_test_shaders {
+    int lanes;
+    amb_vertex_shader vertex;
+    amb_fragment_shader value;       /* target 0: value; target 1: d value.x/dx, d/dy, x, y; target 2: ids, depth */
+    amb_fragment_shader one;         /* target 0: 1, value.x */
+    amb_fragment_shader write_depth; /* target 0: value; depth · uniforms.depth */
+    amb_fragment_shader screen;      /* target 0: x, y, depth, 1 */
+} raster_test_shaders;
+
+const raster_test_shaders *raster_test_shaders_of(amb_isa isa);
+
+#endif

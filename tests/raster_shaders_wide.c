@@ -1,0 +1,53 @@
+#include "tests/raster_shaders.h"
+
+#define raster_test_shaders_get WIDE(raster_test_shaders_get)
+const raster_test_shaders *raster_test_shaders_get(void);
+
+static void vertex(const amb_vs_in *in, amb_vs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    const v4 *base = &u->vertex->clip;
+    v4x *value = out->varyings;
+    f32x instance = i_to_f(in->instance);
+    out->clip = v4x_add(v4x_gather(base, in->vertex * 2), v4x_scale(v4x_splat(u->offset), instance));
+    *value = v4x_gather(base, in->vertex * 2 + 1);
+}
+
+static void value(const amb_fs_in *in, amb_fs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    const v4x *v = in->varyings;
+    out->color[0] = *v;
+#if AMB_LANES > 1
+    out->color[1] = (v4x){f_ddx(v->x), f_ddy(v->x), in->x, in->y};
+#endif
+    out->color[2] =
+        (v4x){f_set((float)in->primitive), f_sel(in->front, f_set(1.0f), f_set(0.0f)), in->depth, f_set(1.0f)};
+    if (u->discard > 0.0f)
+        out->live &= v->x >= u->discard;
+}
+
+static void one(const amb_fs_in *in, amb_fs_out *out)
+{
+    const v4x *v = in->varyings;
+    out->color[0] = (v4x){f_set(1.0f), v->x, f_set(0.0f), f_set(1.0f)};
+}
+
+static void write_depth(const amb_fs_in *in, amb_fs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    const v4x *v = in->varyings;
+    out->color[0] = *v;
+    out->depth = out->depth * u->depth;
+}
+
+static void screen(const amb_fs_in *in, amb_fs_out *out)
+{
+    out->color[0] = (v4x){in->x, in->y, in->depth, f_set(1.0f)};
+}
+
+const raster_test_shaders *raster_test_shaders_get(void)
+{
+    static const raster_test_shaders shaders = {AMB_LANES, vertex, value, one, write_depth, screen};
+    return &shaders;
+}
