@@ -9,46 +9,18 @@ typedef struct bloom_params {
     int reduce;
 } bloom_params;
 
-static const char *const reductions[] = {"half", "quarter", "eighth", NULL};
-
+/* clang-format off */
 static const amb_param bloom_table[] = {
-    {"threshold",
-     AMB_PARAM_FLOAT,
-     "",
-     0.0f,
-     65504.0f,
-     {1.0f},
-     NULL,
-     offsetof(bloom_params, threshold),
+    {"threshold", AMB_PARAM_FLOAT, "", 0.0f, 65504.0f, {1.0f}, NULL, offsetof(bloom_params, threshold),
      "largest channel from which a colour blooms; 1 is paper white"},
-    {"intensity",
-     AMB_PARAM_FLOAT,
-     "",
-     0.0f,
-     100.0f,
-     {0.3f},
-     NULL,
-     offsetof(bloom_params, intensity),
+    {"intensity", AMB_PARAM_FLOAT, "", 0.0f, 100.0f, {0.3f}, NULL, offsetof(bloom_params, intensity),
      "how much of the blurred excess is added"},
-    {"sigma",
-     AMB_PARAM_FLOAT,
-     "cells",
-     0.3f,
-     4.0f,
-     {1.7f},
-     NULL,
-     offsetof(bloom_params, sigma),
+    {"sigma", AMB_PARAM_FLOAT, "cells", 0.3f, 4.0f, {1.7f}, NULL, offsetof(bloom_params, sigma),
      "standard deviation of one of the three 7-tap Gaussians, at reduced size"},
-    {"reduce",
-     AMB_PARAM_CHOICE,
-     "",
-     0.0f,
-     0.0f,
-     {1.0f},
-     reductions,
-     offsetof(bloom_params, reduce),
+    {"reduce", AMB_PARAM_CHOICE, "", 0.0f, 0.0f, {1.0f}, glow_reductions, offsetof(bloom_params, reduce),
      "size the blur works at: smaller is wider and faster"},
 };
+/* clang-format on */
 
 typedef struct bloom_state {
     glow glow;

@@ -28,6 +28,8 @@ typedef struct glow {
     size_t thread_floats;
 } glow;
 
+static const char *const glow_reductions[] = {"half", "quarter", "eighth", NULL}; /* reduce = 2 << choice */
+
 /* Fills *g but for the taps. reduce is 2, 4 or 8. */
 #define amb_glow_begin WIDE(amb_glow_begin)
 amb_status amb_glow_begin(const amb_post_job *job, int reduce, glow *g, amb_error *error);

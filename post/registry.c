@@ -5,7 +5,13 @@
 #include <string.h>
 
 #define PASSES(X) \
+    X(dispersion) \
+    X(exposure)   \
     X(bloom)      \
+    X(brightpass) \
+    X(adjust)     \
+    X(vignette)   \
+    X(grain)      \
     X(display)
 
 #if defined(__x86_64__)
