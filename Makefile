@@ -188,6 +188,37 @@ bench: ## the table of ratios against llvmpipe and the machine's own peaks
 	$(MAKE) $(BUILD)/ambiance-bench
 	$(BUILD)/ambiance-bench $(BENCH_ARGS)
 
+# ---- install --------------------------------------------------------------------------------------------------------
+# DESTDIR stages, PREFIX stays in the files. Shading functions are headers and library: <ambiance/shade/….h>.
+INSTALLED := bin/ambiance include/ambiance lib/libambiance.a lib/libambiance.so lib/libambiance.so.0 \
+             lib/libambiance.so.$(VERSION) lib/pkgconfig/ambiance.pc share/man/man1/ambiance.1 \
+             share/bash-completion/completions/ambiance
+TO = $(DESTDIR)$(PREFIX)
+OPENMP_LIB = $(if $(findstring clang,$(CC)),-l:libomp.so.5,-lgomp)
+.PHONY: install uninstall test-install
+install: all lib ## the program, library, headers, pkg-config file, man page, completion under PREFIX (and DESTDIR)
+	@mkdir -p $(TO)/bin $(TO)/include/ambiance/shade $(TO)/lib/pkgconfig $(TO)/share/man/man1 \
+	    $(TO)/share/bash-completion/completions
+	install -m 755 $(BUILD)/ambiance $(TO)/bin/ambiance
+	install -m 644 include/ambiance/*.h include/ambiance/*.inc $(TO)/include/ambiance
+	@for h in $(wildcard shade/*.h); do \
+	    sed 's|#include "shade/|#include "ambiance/shade/|' $$h > $(TO)/include/ambiance/$$h && chmod 644 $(TO)/include/ambiance/$$h || exit 1; done
+	install -m 644 $(BUILD)/libambiance.a $(TO)/lib/libambiance.a
+	install -m 755 $(BUILD)/libambiance.so $(TO)/lib/libambiance.so.$(VERSION)
+	ln -sf libambiance.so.$(VERSION) $(TO)/lib/libambiance.so.0
+	ln -sf libambiance.so.0 $(TO)/lib/libambiance.so
+	@sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|$(strip $(LDLIBS) $(OPENMP_LIB))|' cli/ambiance.pc.in > $(TO)/lib/pkgconfig/ambiance.pc
+	@chmod 644 $(TO)/lib/pkgconfig/ambiance.pc
+	install -m 644 docs/ambiance.1 $(TO)/share/man/man1/ambiance.1
+	install -m 644 cli/completion.bash $(TO)/share/bash-completion/completions/ambiance
+	@if [ -d $(BUILD)/assets ]; then mkdir -p $(TO)/share/ambiance && rm -rf $(TO)/share/ambiance/pack && \
+	    cp -R $(BUILD)/assets $(TO)/share/ambiance/pack && echo "installed the asset pack"; fi
+	@[ -n "$(DESTDIR)" ] || [ "$$(id -u)" != 0 ] || ldconfig
+uninstall: ## what install put there
+	rm -rf $(addprefix $(TO)/,$(INSTALLED) share/ambiance)
+test-install: all lib ## a user's shader against the installed library, for every instruction set
+	CC=$(CC) MAKE="$(MAKE)" BUILD=$(BUILD) tests/install/run.sh
+
 FORMAT_FILES = $(shell git ls-files '*.c' '*.h')
 format: ## clang-format every file
 	clang-format -i $(FORMAT_FILES)
