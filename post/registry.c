@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define PASSES(X) \
+    X(mlaa)       \
     X(dispersion) \
     X(exposure)   \
     X(bloom)      \
