@@ -1,0 +1,84 @@
+#include "tests/texture_probes.h"
+
+#include <ambiance/half.h>
+
+static f32x column(const float *first, int floats_apart)
+{
+    float lane[AMB_LANES];
+    for (int i = 0; i < AMB_LANES; i++)
+        lane[i] = first[i * floats_apart];
+    return f_load(lane);
+}
+
+static v3x vector(const float *first, int floats_apart)
+{
+    return v3x_of(column(first, floats_apart), column(first + 1, floats_apart), column(first + 2, floats_apart));
+}
+
+static v4x sample(const amb_texture *t, const amb_sampler *s, probe_mode mode, v3x at, v3x dx, v3x dy, f32x lod)
+{
+    v2x uv = v2x_of(at.x, at.y), ux = v2x_of(dx.x, dx.y), uy = v2x_of(dy.x, dy.y);
+    switch (mode) {
+    case PROBE_2D_LOD:
+        return amb_sample_2d_lod(t, s, uv, lod);
+    case PROBE_2D_GRAD:
+        return amb_sample_2d_grad(t, s, uv, ux, uy);
+    case PROBE_3D_LOD:
+        return amb_sample_3d_lod(t, s, at, lod);
+    case PROBE_CUBE_LOD:
+        return amb_sample_cube_lod(t, s, at, lod);
+    case PROBE_CUBE_GRAD:
+        return amb_sample_cube_grad(t, s, at, dx, dy);
+#if AMB_LANES > 1
+    case PROBE_2D_QUAD:
+        return amb_sample_2d(t, s, uv);
+    case PROBE_CUBE_QUAD:
+        return amb_sample_cube(t, s, at);
+#else
+    case PROBE_2D_QUAD:
+    case PROBE_CUBE_QUAD:
+        break;
+#endif
+    }
+    return v4x_splat(v4_of(0.0f, 0.0f, 0.0f, 0.0f));
+}
+
+#define probe_texture_wide WIDE(probe_texture)
+void probe_texture_wide(const amb_texture *texture, const amb_sampler *sampler, probe_mode mode, const probe *in,
+                        int count, float (*out)[4])
+{
+    const int apart = (int)(sizeof *in / sizeof(float));
+    for (int i = 0; i < count; i += AMB_LANES) {
+        v4x c = sample(texture, sampler, mode, vector(in[i].at, apart), vector(in[i].dx, apart),
+                       vector(in[i].dy, apart), column(&in[i].lod, apart));
+        for (int k = 0; k < AMB_LANES; k++) {
+            v4 one = v4x_lane(c, k);
+            memcpy(out[i + k], &one, sizeof one);
+        }
+    }
+}
+
+#define probe_half_wide WIDE(probe_half)
+void probe_half_wide(half_op op, float *floats, uint32_t *words, int count)
+{
+    for (int i = 0; i < count; i += AMB_LANES) {
+        u32x word;
+        memcpy(&word, words + i, sizeof word);
+        if (op == HALF_DECODE) {
+            f_store(floats + i, half_to_f(word));
+        } else if (op == HALF_ENCODE) {
+            word = f_to_half(f_load(floats + i));
+            memcpy(words + i, &word, sizeof word);
+        } else if (op == SMALL_DECODE) {
+            v3x rgb = r11g11b10_decode(word);
+            for (int k = 0; k < AMB_LANES; k++) {
+                floats[3 * (i + k)] = f_lane(rgb.x, k);
+                floats[3 * (i + k) + 1] = f_lane(rgb.y, k);
+                floats[3 * (i + k) + 2] = f_lane(rgb.z, k);
+            }
+        } else {
+            word = r11g11b10_encode(vector(floats + 3 * i, 3));
+            memcpy(words + i, &word, sizeof word);
+        }
+    }
+}
