@@ -1,0 +1,23 @@
+/* The built-in assets: made by generators of ours, complete, deterministic on every instruction set and thread count.
+ * Each gives a new object, owned by the caller. Errors: MEMORY. */
+#ifndef AMB_SCENES_BUILTIN_H
+#define AMB_SCENES_BUILTIN_H
+
+#include <ambiance/context.h>
+#include <ambiance/mesh.h>
+#include <ambiance/texture.h>
+
+/* HDR environments: RGBA16F cube maps, 512² faces, mips; linear radiance, 1 = paper white. */
+amb_status amb_builtin_sky(const amb_context *context, amb_texture **out, amb_error *error); /* evening over a sea */
+amb_status amb_builtin_studio(const amb_context *context, amb_texture **out,
+                              amb_error *error); /* soft boxes, dark room */
+
+/* A latitude-longitude panorama (its centre looks along -z, +x to the right) as an RGBA16F cube map of size² faces. */
+amb_status amb_panorama_to_cube(const amb_context *context, const amb_texture *panorama, int size, amb_texture **out,
+                                amb_error *error);
+/* Irradiance of an environment over π, for every normal: an RGBA32F cube map of 32² faces. A white environment of
+ * radiance 1 gives 1. Every texel is the full sum over the environment's 64² level: no basis, no ringing. */
+amb_status amb_irradiance_cube(const amb_context *context, const amb_texture *environment, amb_texture **out,
+                               amb_error *error);
+
+#endif
