@@ -82,7 +82,7 @@ static void measure(amb_rays *rays, const census *c)
      * distance (about 6 radii) and of the largest coordinate. */
     float far = amb_s_max(amb_s_max(__builtin_fabsf(rays->center.x), __builtin_fabsf(rays->center.y)),
                           __builtin_fabsf(rays->center.z));
-    rays->pad = 0x1p-17f * rays->radius + 0x1p-22f * far;
+    rays->pad = 0x1p-16f * rays->radius + 0x1p-20f * far;
 }
 
 /* ---- primitives -------------------------------------------------------------------------------------------------- */

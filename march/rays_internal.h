@@ -3,8 +3,9 @@
  * Embree's own primitives give other bits on other instruction sets, so Embree only walks its tree; every hit is
  * computed here with one fixed order of IEEE operations. Which hits exist must not depend on the tree either:
  *  1. a hit counts only when its t lies in the slab interval of its cluster's box grown by `pad`, by our arithmetic;
- *  2. Embree gets boxes grown by 2·pad, and its robust traversal never skips a box that the exact ray enters before
- *     t_far; pad exceeds every rounding error of (1), because origins stay within AMB_RAYS_NEAR scene radii;
+ *  2. Embree gets boxes grown by 2·pad. Its traversal of user geometry is the fast one (approximate reciprocals, fused
+ *     operations), but its errors and those of (1) are a few units in the last place of the distances and coordinates
+ *     met, and pad exceeds them, because origins stay within a few scene radii (AMB_RAYS_NEAR);
  *  3. farther origins are first moved along their ray, in double, to the scene. */
 #ifndef MARCH_RAYS_INTERNAL_H
 #define MARCH_RAYS_INTERNAL_H
@@ -15,7 +16,7 @@
 #define AMB_CLUSTER 8            /* triangles a cluster: one Embree primitive, tested lanes-wide */
 #define AMB_MAX_PACKET 16        /* lanes of the widest query */
 #define AMB_RAYS_NEAR 4.0f       /* scene radii */
-#define AMB_RAYS_LARGEST 0x1p60f /* largest coordinate or radius accepted */
+#define AMB_RAYS_LARGEST 0x1p56f /* largest coordinate or radius accepted: Embree takes origins up to 1.8e18 */
 
 /* Triangles that lie close together, structure of arrays; unused places hold NaN and can never be hit. */
 typedef struct amb_cluster {

@@ -33,6 +33,7 @@ static bool approach(const amb_rays *rays, v3 direction, v3 *origin, float *move
     double dx = (double)direction.x, dy = (double)direction.y, dz = (double)direction.z;
     double a = (dx * dx + dy * dy) + dz * dz, t = ((fx * dx + fy * dy) + fz * dz) / a;
     t -= 2.0 * (double)rays->radius / __builtin_sqrt(a); /* the bounds' corners are √3 radii from their centre */
+    t = (double)(float)t;                                /* what the caller's t will be offset by, exactly */
     double x = (double)origin->x + t * dx, y = (double)origin->y + t * dy, z = (double)origin->z + t * dz;
     *moved = (float)t;
     *origin = (v3){(float)x, (float)y, (float)z};
@@ -57,6 +58,7 @@ static void approach_lanes(const amb_rays *rays, traced *ray, maskx far)
     ray->live &= ~far | (largest(away) <= rays->radius * (2.0f * AMB_RAYS_NEAR));
     ray->t_near = ray->t_near - ray->moved;
     ray->t_far = ray->t_far - ray->moved;
+    ray->live &= ray->t_far > 0.0f;
 }
 
 AMB_INLINE traced make_traced(const amb_rays *rays, const amb_rayx *ray, maskx live)
@@ -72,6 +74,13 @@ AMB_INLINE traced make_traced(const amb_rays *rays, const amb_rayx *ray, maskx l
     maskx far = live & ~(largest(away) <= rays->radius * AMB_RAYS_NEAR);
     if (m_any(far))
         approach_lanes(rays, &r, far);
+    if (!m_all(r.live)) { /* Embree asserts that dead lanes, too, hold no NaN */
+        v3 along_x = {1.0f, 0.0f, 0.0f};
+        r.origin = v3x_sel(r.live, r.origin, v3x_splat(rays->center));
+        r.direction = v3x_sel(r.live, r.direction, v3x_splat(along_x));
+        r.t_near = f_sel(r.live, r.t_near, f_set(0.0f));
+        r.t_far = f_sel(r.live, r.t_far, f_set(0.0f));
+    }
     r.t_near = f_max(r.t_near, f_set(0.0f));
     return r;
 }

@@ -18,7 +18,7 @@ typedef struct amb_rays_geometry {
     uint32_t sphere_count;
 } amb_rays_geometry;
 
-/* Coordinates and radii up to 2⁶⁰. Errors: ARGUMENT, FORMAT (index out of range, position not finite), LIMIT, MEMORY.
+/* Coordinates and radii up to 2⁵⁶. Errors: ARGUMENT, FORMAT (index out of range, position not finite), LIMIT, MEMORY.
  * Triangles without area and spheres without a positive finite radius or a finite centre are never hit. */
 amb_status amb_rays_create(const amb_context *context, const amb_rays_geometry *geometry, uint32_t geometry_count,
                            amb_rays **out, amb_error *error);
@@ -42,7 +42,7 @@ typedef struct amb_hitx {
  * not finite, whose direction's largest component is below 2⁻¹²⁶ or whose limits are NaN miss. Triangles are two-sided
  * and watertight: no ray slips between triangles that share vertices. A sphere is hit where the ray enters it, from
  * inside where it leaves. Limits are compared near the scene: a ray from 4 scene radii away or more is first moved
- * along itself, which rounds t by up to 2⁻²⁴ of its length. */
+ * along itself, which rounds t by up to 2⁻²² of its length. */
 #define amb_rays_closest WIDE(amb_rays_closest)
 void amb_rays_closest(const amb_rays *rays, const amb_rayx *ray, maskx live, amb_hitx *out);
 /* Any hit at all? */
