@@ -12,6 +12,11 @@ amb_status amb_builtin_sky(const amb_context *context, amb_texture **out, amb_er
 amb_status amb_builtin_studio(const amb_context *context, amb_texture **out,
                               amb_error *error); /* soft boxes, dark room */
 
+/* The statue of scene lucy: a winged Victory with torch and wreath on a plinth. World units: the figure is about 1 tall,
+ * its feet at y = 0, y up, facing +z; the plinth reaches down to y = -0.135. Unit normals, no UVs; about 650,000
+ * triangles, a closed manifold. Errors: MEMORY. */
+amb_status amb_builtin_statue(const amb_context *context, amb_mesh **out, amb_error *error);
+
 /* A latitude-longitude panorama (its centre looks along -z, +x to the right) as an RGBA16F cube map of size² faces. */
 amb_status amb_panorama_to_cube(const amb_context *context, const amb_texture *panorama, int size, amb_texture **out,
                                 amb_error *error);
