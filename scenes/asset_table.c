@@ -1,0 +1,23 @@
+#include "scenes/asset_table.h"
+
+#include "scenes/builtin/builtin.h"
+
+/* An environment and its irradiance: two rows of one source. */
+#define ENVIRONMENT(NAME, ABOUT, VERSION, MAKE)                                                                       \
+    {.name = NAME,                                                                                                    \
+     .about = ABOUT,                                                                                                  \
+     .kind = ASSET_ENVIRONMENT,                                                                                       \
+     .srgb = true,                                                                                                    \
+     .user_file = {NAME ".exr", NAME ".hdr", NAME ".ktx", NAME ".png", NAME ".jpg", NAME ".jpeg"},                    \
+     .pack_file = NAME ".ktx",                                                                                        \
+     .version = VERSION,                                                                                              \
+     .make_texture = MAKE},                                                                                           \
+    {                                                                                                                 \
+        .name = NAME "/irradiance", .about = "irradiance / pi of " NAME, .kind = ASSET_IRRADIANCE, .version = VERSION \
+    }
+
+const asset_row asset_table[] = {
+    ENVIRONMENT("env/outdoor", "outdoor light: an HDR cube map or panorama", 1, amb_builtin_sky),
+    ENVIRONMENT("env/studio", "indoor light: an HDR cube map or panorama", 1, amb_builtin_studio),
+};
+const int asset_table_count = sizeof asset_table / sizeof *asset_table;

@@ -1,0 +1,346 @@
+/* The asset resolver: finds each asset's source when it is created, loads on request, remembers what was used. */
+#include "core/names.h"
+#include "io/file.h"
+#include "scenes/asset_table.h"
+#include "scenes/builtin/builtin.h"
+
+#include <errno.h>
+#include <sha2.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#ifndef AMB_PACK_DIR
+#define AMB_PACK_DIR "/usr/local/share/ambiance/assets" /* where `make install` puts the pack */
+#endif
+
+typedef struct asset {
+    const asset_row *row;
+    amb_asset_source source;
+    char path[1024]; /* "" for built in */
+    char sha256[65]; /* "" until made or read */
+    bool is_used;    /* handed out */
+    amb_texture *texture;
+    amb_mesh *mesh;
+} asset;
+
+struct amb_assets {
+    const amb_context *context;
+    int count;
+    asset *asset; /* one a row of the table */
+};
+
+/* ---- where ----------------------------------------------------------------------------------------------------- */
+
+static const char *variable(const char *name)
+{
+    const char *value = getenv(name);
+    return value && *value ? value : NULL;
+}
+
+static amb_status join(char path[1024], const char *folder, const char *file, amb_error *error)
+{
+    int length = snprintf(path, 1024, "%s/%s", folder, file);
+    return length < 1024 ? AMB_OK : amb_fail(error, AMB_ERROR_LIMIT, "assets folder '%.200s…': name too long", folder);
+}
+
+/* $XDG_DATA_HOME/NAME or ~/.local/share/NAME; "" when neither variable is set. */
+static amb_status data_folder(char path[1024], const char *name, amb_error *error)
+{
+    char file[64];
+    path[0] = '\0';
+    if (variable("XDG_DATA_HOME"))
+        return join(path, variable("XDG_DATA_HOME"), name, error);
+    snprintf(file, sizeof file, ".local/share/%s", name);
+    return variable("HOME") ? join(path, variable("HOME"), file, error) : AMB_OK;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat file;
+    return stat(path, &file) == 0 && S_ISDIR(file.st_mode);
+}
+
+/* The user's folder. One that was asked for by name must be there. */
+static amb_status find_user_folder(const char *asked, char path[1024], amb_error *error)
+{
+    asked = asked ? asked : variable("AMBIANCE_ASSETS");
+    if (!asked)
+        return data_folder(path, "ambiance", error);
+    struct stat file;
+    if (stat(asked, &file) != 0)
+        return amb_fail(error, AMB_ERROR_IO, "assets folder '%s': %s", asked, strerror(errno));
+    if (!S_ISDIR(file.st_mode))
+        return amb_fail(error, AMB_ERROR_IO, "assets folder '%s': it is not a folder", asked);
+    return join(path, asked, "", error);
+}
+
+/* The pack may be missing anywhere: it is a download. */
+static amb_status find_pack_folder(const char *asked, char path[1024], amb_error *error)
+{
+    asked = asked ? asked : variable("AMBIANCE_PACK");
+    if (asked)
+        return join(path, asked, "", error);
+    amb_status status = data_folder(path, "ambiance-pack", error);
+    if (status == AMB_OK && !is_folder(path))
+        status = join(path, AMB_PACK_DIR, "", error);
+    return status;
+}
+
+/* Sets path when folder has the file. A file that is there but cannot be read is found too: loading says why. */
+static amb_status look_for(const char *folder, const char *file, char path[1024], bool *is_found, amb_error *error)
+{
+    struct stat info;
+    *is_found = false;
+    if (!*folder || !file)
+        return AMB_OK;
+    size_t length = strlen(folder);
+    char trimmed[1024];
+    snprintf(trimmed, sizeof trimmed, "%.*s", (int)(length - (length > 1 && folder[length - 1] == '/')), folder);
+    amb_status status = join(path, trimmed, file, error);
+    *is_found = status == AMB_OK && (stat(path, &info) == 0 || (errno != ENOENT && errno != ENOTDIR));
+    if (!*is_found)
+        path[0] = '\0';
+    return status;
+}
+
+static amb_status resolve(asset *item, const char *user, const char *pack, amb_error *error)
+{
+    const size_t names = sizeof item->row->user_file / sizeof *item->row->user_file;
+    bool is_found = false;
+    amb_status status = AMB_OK;
+    if (item->row->kind == ASSET_IRRADIANCE) { /* where its environment comes from */
+        item->source = item[-1].source;
+        memcpy(item->path, item[-1].path, sizeof item->path);
+        return AMB_OK;
+    }
+    item->source = AMB_ASSET_USER;
+    for (size_t i = 0; i < names && !is_found && status == AMB_OK; i++)
+        status = look_for(user, item->row->user_file[i], item->path, &is_found, error);
+    if (!is_found && status == AMB_OK) {
+        item->source = AMB_ASSET_PACK;
+        status = look_for(pack, item->row->pack_file, item->path, &is_found, error);
+    }
+    if (!is_found)
+        item->source = AMB_ASSET_BUILTIN;
+    return status;
+}
+
+amb_status amb_assets_create(const amb_context *context, const amb_assets_options *options, amb_assets **out,
+                             amb_error *error)
+{
+    static const amb_assets_options defaults = {0};
+    char user[1024] = "", pack[1024] = "";
+    amb_status status = AMB_OK;
+    *out = NULL;
+    options = options ? options : &defaults;
+    amb_assets *assets = calloc(1, sizeof *assets);
+    if (assets)
+        assets->asset = calloc((size_t)asset_table_count, sizeof *assets->asset);
+    if (!assets || !assets->asset)
+        status = amb_fail(error, AMB_ERROR_MEMORY, "out of memory for the asset table");
+    if (status == AMB_OK && !options->builtin_only)
+        status = find_user_folder(options->user_dir, user, error);
+    if (status == AMB_OK && !options->builtin_only)
+        status = find_pack_folder(options->pack_dir, pack, error);
+    for (int i = 0; i < asset_table_count && status == AMB_OK; i++) {
+        assets->context = context;
+        assets->count = i + 1;
+        assets->asset[i].row = &asset_table[i];
+        status = resolve(&assets->asset[i], user, pack, error);
+    }
+    if (status != AMB_OK)
+        amb_assets_close(&assets);
+    *out = assets;
+    return status;
+}
+
+void amb_assets_close(amb_assets **assets)
+{
+    if (!assets || !*assets)
+        return;
+    for (int i = 0; i < (*assets)->count; i++) {
+        amb_texture_close(&(*assets)->asset[i].texture);
+        amb_mesh_close(&(*assets)->asset[i].mesh);
+    }
+    free((*assets)->asset);
+    free(*assets);
+    *assets = NULL;
+}
+
+/* ---- loading --------------------------------------------------------------------------------------------------- */
+
+/* Of the file's bytes, or of "builtin:NAME:VERSION". */
+static void set_hash(asset *item, const uint8_t *data, size_t bytes)
+{
+    char text[128];
+    if (item->source == AMB_ASSET_BUILTIN) {
+        bytes = (size_t)snprintf(text, sizeof text, "builtin:%s:%d", item->row->name, item->row->version);
+        data = (const uint8_t *)text;
+    }
+    SHA256Data(data, bytes, item->sha256);
+}
+
+/* A cube map stays; a 2:1 panorama becomes one whose faces are as fine as its horizon. */
+static amb_status to_cube(const amb_context *context, const char *path, amb_texture **texture, amb_error *error)
+{
+    amb_texture_info info = amb_texture_describe(*texture);
+    amb_texture *cube;
+    if (info.kind == AMB_TEXTURE_CUBE)
+        return AMB_OK;
+    if (info.width != 2 * info.height)
+        return amb_fail(error, AMB_ERROR_FORMAT,
+                        "%s: panorama of %dx%d pixels; allowed are a width of twice the height, or a cube map", path,
+                        info.width, info.height);
+    int size = (info.width / 4 + 15) / 16 * 16;
+    amb_status status = amb_panorama_to_cube(context, *texture, size, &cube, error);
+    if (status == AMB_OK) {
+        amb_texture_close(texture);
+        *texture = cube;
+    }
+    return status;
+}
+
+static amb_status load_texture(const amb_context *context, asset *item, const uint8_t *data, size_t bytes,
+                               amb_error *error)
+{
+    if (!data)
+        return item->row->make_texture(context, &item->texture, error);
+    amb_status status = amb_read_texture_memory(data, bytes, item->path, item->row->srgb, &item->texture, error);
+    if (status == AMB_OK && item->row->kind == ASSET_ENVIRONMENT)
+        status = to_cube(context, item->path, &item->texture, error);
+    else if (status == AMB_OK && amb_texture_describe(item->texture).kind != AMB_TEXTURE_2D)
+        status = amb_fail(error, AMB_ERROR_FORMAT, "%s: a cube map; this asset is a flat texture", item->path);
+    if (status != AMB_OK)
+        amb_texture_close(&item->texture);
+    return status;
+}
+
+static amb_status load_mesh(const amb_context *context, asset *item, amb_error *error)
+{
+    if (item->source == AMB_ASSET_BUILTIN)
+        return item->row->make_mesh(context, &item->mesh, error);
+    amb_status status = amb_read_mesh(item->path, &item->mesh, error);
+    if (status == AMB_OK && !item->mesh->normal)
+        status = amb_mesh_smooth_normals(item->mesh, true, error);
+    if (status != AMB_OK)
+        amb_mesh_close(&item->mesh);
+    return status;
+}
+
+static amb_status load_source(const amb_context *context, asset *item, amb_error *error)
+{
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    amb_status status = AMB_OK;
+    if (item->source != AMB_ASSET_BUILTIN)
+        status = amb_read_file(item->path, &data, &bytes, error);
+    if (status == AMB_OK)
+        status = item->row->kind == ASSET_MESH ? load_mesh(context, item, error)
+                                               : load_texture(context, item, data, bytes, error);
+    if (status == AMB_OK)
+        set_hash(item, data, bytes);
+    free(data);
+    return status;
+}
+
+static amb_status load(const amb_context *context, asset *item, amb_error *error)
+{
+    if (item->texture || item->mesh)
+        return AMB_OK;
+    if (item->row->kind != ASSET_IRRADIANCE)
+        return load_source(context, item, error);
+    asset *environment = item - 1;
+    amb_status status = load(context, environment, error);
+    if (status == AMB_OK)
+        status = amb_irradiance_cube(context, environment->texture, &item->texture, error);
+    if (status == AMB_OK)
+        memcpy(item->sha256, environment->sha256, sizeof item->sha256);
+    return status;
+}
+
+static const char *name_of(const void *user, int index)
+{
+    (void)user;
+    return asset_table[index].name;
+}
+
+/* Finds, loads when needed, and marks as used. */
+static amb_status use(amb_assets *assets, const char *name, bool is_mesh, asset **out, amb_error *error)
+{
+    asset *item = NULL;
+    char hint[320];
+    for (int i = 0; i < assets->count && name; i++)
+        if (strcmp(assets->asset[i].row->name, name) == 0)
+            item = &assets->asset[i];
+    if (!item)
+        return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown asset: %s; %s", name ? name : "(none)",
+                        amb_names_hint(name, assets->count, name_of, NULL, hint, sizeof hint));
+    if ((item->row->kind == ASSET_MESH) != is_mesh)
+        return amb_fail(error, AMB_ERROR_NOT_FOUND, "asset %s: it is a %s, not a %s", name,
+                        is_mesh ? "texture" : "mesh", is_mesh ? "mesh" : "texture");
+    amb_status status = load(assets->context, item, error);
+    item->is_used |= status == AMB_OK;
+    *out = item;
+    return status;
+}
+
+amb_status amb_assets_texture(amb_assets *assets, const char *name, const amb_texture **out, amb_error *error)
+{
+    asset *item;
+    *out = NULL;
+    amb_status status = use(assets, name, false, &item, error);
+    if (status == AMB_OK)
+        *out = item->texture;
+    return status;
+}
+
+amb_status amb_assets_mesh(amb_assets *assets, const char *name, const amb_mesh **out, amb_error *error)
+{
+    asset *item;
+    *out = NULL;
+    amb_status status = use(assets, name, true, &item, error);
+    if (status == AMB_OK)
+        *out = item->mesh;
+    return status;
+}
+
+/* ---- records --------------------------------------------------------------------------------------------------- */
+
+int amb_assets_count(const amb_assets *assets) { return assets->count; }
+
+void amb_assets_describe(const amb_assets *assets, int index, amb_asset_info *out)
+{
+    const asset *item = &assets->asset[index];
+    *out = (amb_asset_info){.name = item->row->name, .about = item->row->about, .source = item->source};
+    memcpy(out->path, item->path, sizeof out->path);
+    memcpy(out->sha256, item->sha256, sizeof out->sha256);
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp((*(const asset *const *)a)->row->name, (*(const asset *const *)b)->row->name);
+}
+
+void amb_assets_digest(const amb_assets *assets, char hex[65])
+{
+    static const char *const sources[] = {"user", "pack", "builtin"};
+    const asset *used[256];
+    size_t count = 0;
+    hex[0] = '\0';
+    for (int i = 0; i < assets->count && count < sizeof used / sizeof *used; i++)
+        if (assets->asset[i].is_used)
+            used[count++] = &assets->asset[i];
+    if (count == 0)
+        return;
+    qsort(used, count, sizeof *used, by_name);
+    SHA2_CTX sha;
+    SHA256Init(&sha);
+    for (size_t i = 0; i < count; i++) {
+        char line[256];
+        int length =
+            snprintf(line, sizeof line, "%s %s %s\n", used[i]->row->name, sources[used[i]->source], used[i]->sha256);
+        SHA256Update(&sha, (const uint8_t *)line, (size_t)length);
+    }
+    SHA256End(&sha, hex);
+}
