@@ -25,7 +25,7 @@ comma := ,
 # ---- flags ----------------------------------------------------------------------------------------------------------
 # The promise "same bits everywhere" rests on -ffp-contract=off and on nothing from fast-math (docs/determinism.md).
 WARN    := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wstrict-prototypes -Wmissing-prototypes \
-           -Wno-bool-operation -Wno-psabi -Wno-unknown-warning-option
+           -Wno-bool-operation -Wno-psabi
 EXACT   := -ffp-contract=off -fno-math-errno -fno-trapping-math
 CPPFLAGS += -Iinclude -I. -D_GNU_SOURCE -DAMB_VERSION='"$(VERSION)"' -isystem /usr/include/OpenEXR \
             -isystem /usr/include/Imath -isystem /usr/include/stb
