@@ -13,10 +13,10 @@ typedef struct bone {
 static const bone inner_bone = {{-0.01f, -0.03f}, {0.02f, 0.15f}, {0.14f, 0.215f}};
 static const bone outer_bone = {{0.14f, 0.215f}, {0.225f, 0.26f}, {0.285f, 0.15f}};
 
-static v2 bone_point(const bone *bone, float t)
+static v2 bone_point(const bone *on, float t)
 {
     float s = 1.0f - t;
-    return v2_add(v2_add(v2_scale(bone->a, s * s), v2_scale(bone->b, 2.0f * s * t)), v2_scale(bone->c, t * t));
+    return v2_add(v2_add(v2_scale(on->a, s * s), v2_scale(on->b, 2.0f * s * t)), v2_scale(on->c, t * t));
 }
 
 /* Along the whole arm: 0 shoulder … 1 wrist … 2 finger. */
