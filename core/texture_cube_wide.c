@@ -57,14 +57,15 @@ AMB_INLINE void sample_level_cube(const request_cube *r, texture_storage store, 
     f32x x = u * l.width, y = v * l.width;
     if (r->sampler->filter == AMB_NEAREST) {
         f32x last = l.width - 1.0f;
-        i32x column = f_to_i(f_min(x, last)) + 1, row = f_to_i(f_min(y, last)) + 1;
+        i32x column = small_to_i(f_min(x, last)) + 1, row = small_to_i(f_min(y, last)) + 1;
         fetch_texel(r->texture, store, base + row * l.pitch + column, out);
         return;
     }
     x = x + 0.5f; /* minus half a texel for centres, plus one for the border */
     y = y + 0.5f;
     f32x left = f_floor(x), above = f_floor(y);
-    fetch_bilinear(r->texture, store, base + f_to_i(above) * l.pitch + f_to_i(left), l.pitch, x - left, y - above, out);
+    fetch_bilinear(r->texture, store, base + small_to_i(above) * l.pitch + small_to_i(left), l.pitch, x - left,
+                   y - above, out);
 }
 
 AMB_INLINE void sample_levels_cube(const request_cube *r, texture_storage store, v3x direction,

@@ -20,6 +20,12 @@ AMB_INLINE __m128i load_two_pairs(const uint32_t *a, const uint32_t *b)
     return _mm_castpd_si128(_mm_loadh_pd(low, (const double *)(const void *)b));
 }
 AMB_INLINE __m128i load_quad(const uint32_t *p) { return _mm_loadu_si128((const __m128i *)(const void *)p); }
+/* Spills the lanes: reading an index back is one load, taking it out of a vector register is two shuffles. The empty
+ * statement keeps compilers from seeing through the memory. */
+#define LANE_OFFSETS_(at, index)                        \
+    int32_t at[AMB_LANES] __attribute__((aligned(64))); \
+    memcpy(at, &(index), sizeof at);                    \
+    __asm__("" : "+m"(at))
 #endif
 #if AMB_X86 && AMB_LANES == 16
 #define LANES_FROM_BLOCKS_(b0, b1, b2, b3) \
@@ -43,8 +49,7 @@ AMB_INLINE __m128i load_quad(const uint32_t *p) { return _mm_loadu_si128((const 
 AMB_INLINE void fetch_2(const uint32_t *data, i32x index, u32x word[2])
 {
 #if AMB_X86
-    int32_t at[AMB_LANES] __attribute__((aligned(64)));
-    memcpy(at, &index, sizeof at);
+    LANE_OFFSETS_(at, index);
 #define PAIRS_(j) load_two_pairs(data + at[(4 * (j)) % AMB_LANES], data + at[(4 * (j) + 1) % AMB_LANES])
 #define PAIRS_2_(j) load_two_pairs(data + at[(4 * (j) + 2) % AMB_LANES], data + at[(4 * (j) + 3) % AMB_LANES])
     LANES_INT_ low = LANES_FROM_BLOCKS_(PAIRS_(0), PAIRS_(1), PAIRS_(2), PAIRS_(3));
@@ -63,8 +68,7 @@ AMB_INLINE void fetch_2(const uint32_t *data, i32x index, u32x word[2])
 AMB_INLINE void fetch_4(const uint32_t *data, i32x index, u32x word[4])
 {
 #if AMB_X86
-    int32_t at[AMB_LANES] __attribute__((aligned(64)));
-    memcpy(at, &index, sizeof at);
+    LANE_OFFSETS_(at, index);
 #define QUAD_(i, j) load_quad(data + at[(4 * (j) + (i)) % AMB_LANES])
     LANES_INT_ r0 = LANES_FROM_BLOCKS_(QUAD_(0, 0), QUAD_(0, 1), QUAD_(0, 2), QUAD_(0, 3));
     LANES_INT_ r1 = LANES_FROM_BLOCKS_(QUAD_(1, 0), QUAD_(1, 1), QUAD_(1, 2), QUAD_(1, 3));
@@ -168,6 +172,16 @@ AMB_INLINE v4x finish_color(texture_storage store, const colorx *c)
     return (v4x){c->c[0] * scale, c->c[1] * scale, c->c[2] * scale, c->c[3] * scale};
 }
 
+/* Float to int for values known to fit: no clamps. */
+AMB_INLINE i32x small_to_i(f32x a)
+{
+#if AMB_LANES == 1
+    return (int32_t)a;
+#else
+    return __builtin_convertvector(a, i32x);
+#endif
+}
+
 /* ---- levels ----------------------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -221,10 +235,10 @@ AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f3
     lod = f_clamp(lod + s->lod_bias, f_set(s->lod_min), f_set(top));
     lod = f_clamp(lod, f_set(0.0f), f_set(last));
     if (s->filter != AMB_TRILINEAR) {
-        i32x level = f_to_i(lod + 0.5f);
+        i32x level = small_to_i(lod + 0.5f);
         return (lod_levels){level, level, f_set(0.0f)};
     }
-    i32x near = f_to_i(lod);
+    i32x near = small_to_i(lod);
     return (lod_levels){near, i_min(near + 1, i_set(t->info.levels - 1)), lod - i_to_f(near)};
 }
 

@@ -17,8 +17,8 @@ AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
         t = f_clamp(u * size - 0.5f, f_set(0.0f), size - 1.0f);
     }
     f32x left = f_floor(t);
-    i32x i = f_to_i(left);
-    *texel = i + ((i >> 31) & f_to_i(size)); /* left of the first comes the last */
+    i32x i = small_to_i(left);
+    *texel = i + ((i >> 31) & small_to_i(size)); /* left of the first comes the last */
     return t - left;
 }
 
@@ -31,7 +31,7 @@ AMB_INLINE i32x wrap_nearest(f32x u, f32x size, amb_wrap wrap)
         f32x pair = u * 0.5f;
         u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
     }
-    return f_to_i(f_clamp(u * size, f_set(0.0f), size - 1.0f));
+    return small_to_i(f_clamp(u * size, f_set(0.0f), size - 1.0f));
 }
 
 /* ---- 2D --------------------------------------------------------------------------------------------------------- */

@@ -16,13 +16,11 @@ AMB_INLINE f32x half_to_f(u32x half)
     __m256i pairs = _mm256_packus_epi32((__m256i)half, (__m256i)half);
     return (f32x)_mm256_cvtph_ps(_mm256_castsi256_si128(_mm256_permute4x64_epi64(pairs, 0x08)));
 #else
-    i32x h = u_as_i(half);
-    i32x sign = u_as_i((half & 0x8000u) << 16), magnitude = h & 0x7fff;
-    f32x small = i_to_f(magnitude) * 0x1p-24f;
-    i32x normal = (magnitude << 13) + (112 << 23);
-    i32x special = (magnitude << 13) | 0x7f800000 | i_sel(magnitude > 0x7c00, i_set(0x00400000), i_set(0));
-    i32x bits = i_sel(magnitude < 0x0400, f_bits(small), i_sel(magnitude < 0x7c00, normal, special));
-    return f_from_bits(bits | sign);
+    i32x sign = u_as_i((half & 0x8000u) << 16), magnitude = u_as_i(half & 0x7fffu), zero = i_set(0);
+    f32x finite = f_from_bits(magnitude << 13) * 0x1p112f; /* exact, subnormals too */
+    i32x infinite = i_sel(magnitude > 0x7bff, i_set(0x7f800000), zero);
+    i32x quiet = i_sel(magnitude > 0x7c00, i_set(0x00400000), zero);
+    return f_from_bits(f_bits(finite) | infinite | quiet | sign);
 #endif
 }
 
