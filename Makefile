@@ -157,7 +157,7 @@ fuzz-run: $(FUZZERS)
 	        > $$f.log 2>&1 && grep -E 'number_of_executed_units' $$f.log || { tail -n 40 $$f.log; exit 1; }; done
 
 # ---- jobs -----------------------------------------------------------------------------------------------------------
-.PHONY: help deps demo bench lint format clean
+.PHONY: help deps assets demo bench lint format clean
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:[^#]*## /\t/' | sort | expand -t 14
 
@@ -171,6 +171,9 @@ deps: ## install the Debian packages that are missing
 	    $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing >/dev/null || \
 	    { echo "could not install:" $$missing "(as root: apt-get install them)"; exit 1; }; \
 	fi
+
+assets: ## fetch the asset pack into build/assets (ASSETS=builtin: nothing)
+	$(if $(filter builtin,$(ASSETS)),@echo "asset pack: not fetched (ASSETS=builtin)",@scenes/pack/fetch.sh $(BUILD)/assets)
 
 DEMO_SCENES ?= julia mercury lucy
 DEMO_SIZE   ?= 1440x1080

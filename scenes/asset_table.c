@@ -19,5 +19,12 @@
 const asset_row asset_table[] = {
     ENVIRONMENT("env/outdoor", "outdoor light: an HDR cube map or panorama", 1, amb_builtin_sky),
     ENVIRONMENT("env/studio", "indoor light: an HDR cube map or panorama", 1, amb_builtin_studio),
+    {.name = "lucy/mesh",
+     .about = "the statue of scene lucy: your scan, or a winged figure of our own",
+     .kind = ASSET_MESH,
+     .user_file = {"lucy/lucy.ply", "lucy/lucy.obj", "lucy/lucy.glb", "lucy/lucy.gltf", "lucy/lucy100k.ply",
+                   "lucy/lucy100k.obj"},
+     .version = 1,
+     .make_mesh = amb_builtin_statue},
 };
 const int asset_table_count = sizeof asset_table / sizeof *asset_table;

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 
 #ifndef AMB_PACK_DIR
-#define AMB_PACK_DIR "/usr/local/share/ambiance/assets" /* where `make install` puts the pack */
+#define AMB_PACK_DIR "/usr/local/share/ambiance/pack" /* where `make install` puts the pack */
 #endif
 
 typedef struct asset {

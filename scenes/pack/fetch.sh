@@ -1,0 +1,116 @@
+#!/bin/sh
+# Fetches the asset pack: fetch.sh FOLDER. Reads the list beside it (or $AMBIANCE_PACK_LIST), downloads only packages
+# whose files are not all there, keeps only the listed files, checks every SHA-256, writes FOLDER/ATTRIBUTION.txt.
+# Downloads go to FOLDER.part and stay there when a run is cut short: the next run goes on. A file appears in FOLDER
+# whole or not at all. When something cannot be had: one warning line and success, since every asset is also built in.
+set -eu
+
+folder=${1:?usage: fetch.sh FOLDER}
+list=${AMBIANCE_PACK_LIST:-$(dirname "$0")/list}
+mirror=${AMBIANCE_PACK_MIRROR:-http://deb.debian.org/debian}
+work=$folder.part
+
+give_up() {
+    echo "warning: asset pack: $1; built-in assets stand in for what is missing (make assets tries again)" >&2
+    write_credits
+    exit 0
+}
+
+packages() { awk '$1 == "package" { print $2 }' "$list"; }
+# field PACKAGE N: the N-th word of its package line
+field() { awk -v name="$1" -v n="$2" '$1 == "package" && $2 == name { print $n }' "$list"; }
+# files PACKAGE: its "TARGET SHA-256 PATH" lines
+files() { awk -v name="$1" '$1 == "package" { here = $2 == name } here && $1 == "file" { print $2, $3, $4 }' "$list"; }
+credits() { awk -v name="$1" '$1 == "package" { here = $2 == name } here && $1 == "credit" { $1 = ""; print }' "$list"; }
+
+is_whole() { # FILE SHA-256
+    [ -f "$1" ] && [ "$(sha256sum < "$1" | cut -d ' ' -f 1)" = "$2" ]
+}
+
+is_complete() { # PACKAGE
+    files "$1" | while read -r target sha path; do
+        is_whole "$folder/$target" "$sha" || exit 1
+    done
+}
+
+write_credits() {
+    [ -d "$folder" ] || return 0
+    {
+        echo "The files of this folder, and who made them:"
+        for package in $(packages); do
+            is_complete "$package" || continue
+            echo
+            files "$package" | while read -r target sha path; do echo "$target"; done
+            credits "$package"
+        done
+    } > "$folder/.ATTRIBUTION.part"
+    mv "$folder/.ATTRIBUTION.part" "$folder/ATTRIBUTION.txt"
+}
+
+# The package of the system's own lists, or else the pinned file from the mirror; both leave $work/PACKAGE.deb.
+download() { # PACKAGE
+    [ ! -f "$work/$1.deb" ] || return 0
+    quiet=-qq
+    [ ! -t 1 ] || quiet=
+    sandbox=
+    [ "$(id -u)" != 0 ] || sandbox="-o APT::Sandbox::User=root"
+    # shellcheck disable=SC2086
+    if command -v apt-get > /dev/null &&
+        (cd "$work" && apt-get $quiet $sandbox -o Acquire::Retries=1 -o Acquire::http::Timeout=20 download "$1") \
+            2> "$work/log"; then
+        for deb in "$work/$1"_*.deb; do
+            mv "$deb" "$work/$1.deb" && return 0
+        done
+    fi
+    command -v curl > /dev/null || return 1
+    bar=-s
+    [ ! -t 2 ] || bar=-#
+    curl -fL $bar -C - --connect-timeout 20 --retry 1 -o "$work/$1.deb.part" "$mirror/$(field "$1" 5)" &&
+        mv "$work/$1.deb.part" "$work/$1.deb"
+}
+
+# Unpacks the listed files and moves each into place once its sum is right.
+keep() { # PACKAGE
+    rm -rf "$work/out"
+    mkdir -p "$work/out"
+    files "$1" | cut -d ' ' -f 3 > "$work/patterns"
+    dpkg-deb --fsys-tarfile "$work/$1.deb" 2> "$work/log" |
+        tar -x -C "$work/out" --wildcards -T "$work/patterns" 2>> "$work/log" || return 1
+    files "$1" | while read -r target sha path; do
+        found=$(find "$work/out" -type f -path "$path" | head -n 1)
+        is_whole "${found:-/nonexistent}" "$sha" || exit 1
+        mkdir -p "$(dirname "$folder/$target")"
+        mv "$found" "$folder/$target"
+    done
+}
+
+bytes=0
+wanted=
+for package in $(packages); do
+    is_complete "$package" && continue
+    wanted="$wanted $package"
+    bytes=$((bytes + $(field "$package" 4)))
+done
+if [ -z "$wanted" ]; then
+    echo "asset pack: complete in $folder"
+    exit 0
+fi
+
+# shellcheck disable=SC2086
+set -- $wanted
+echo "asset pack: fetching $((bytes / 1000000)) MB in $# package(s) to $folder (ASSETS=builtin does without)"
+mkdir -p "$folder" "$work" 2> /dev/null || give_up "cannot write to $folder"
+number=0
+for package in "$@"; do
+    number=$((number + 1))
+    echo "asset pack: $number of $#: $package, $(($(field "$package" 4) / 1000000)) MB"
+    download "$package" || give_up "cannot download $package"
+    keep "$package" || {
+        rm -rf "$work"
+        give_up "$package does not hold the pinned files ($(field "$package" 3))"
+    }
+    rm -f "$work/$package.deb"
+done
+rm -rf "$work"
+write_credits
+echo "asset pack: $(find "$folder" -type f ! -name ATTRIBUTION.txt | wc -l) files, $(du -sm "$folder" | cut -f 1) MB in $folder; credits in $folder/ATTRIBUTION.txt"
