@@ -9,25 +9,28 @@
 #define LOOKUP_SLOTS 32768
 
 AMB_DECLARE_WIDE(void, raster_vertices, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
+AMB_DECLARE_WIDE(void, raster_setup, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_tile, (const amb_pass *pass, int tile, raster_scratch *scratch, int thread));
 
 static bool make_scratch(const amb_pass *pass, raster_scratch *s)
 {
-    const size_t vertices = RASTER_CHUNK_VERTICES + 16; /* lanes of padding */
+    const size_t vertices = RASTER_CHUNK_VERTICES + 16, triangles = RASTER_CHUNK_TRIANGLES + 16; /* lanes of padding */
     size_t side = (size_t)pass->tile_size;
     s->lookup = calloc(LOOKUP_SLOTS, sizeof *s->lookup);
     s->index = malloc(vertices * sizeof *s->index);
     s->instance = malloc(vertices * sizeof *s->instance);
     s->clip_x = malloc(4 * vertices * sizeof *s->clip_x);
-    s->code = malloc(vertices);
-    s->corner = malloc((size_t)4 * RASTER_CHUNK_TRIANGLES * sizeof *s->corner);
+    s->code = malloc(vertices * sizeof *s->code);
+    s->corner[0] = malloc(4 * triangles * sizeof *s->corner[0]);
     s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
     s->tile = aligned_alloc(64, side * side * (size_t)pass->planes * sizeof *s->tile);
-    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner || !s->group || !s->tile)
+    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner[0] || !s->group || !s->tile)
         return false;
     s->clip_y = s->clip_x + vertices;
     s->clip_z = s->clip_y + vertices;
     s->clip_w = s->clip_z + vertices;
+    for (int i = 1; i < 4; i++)
+        s->corner[i] = s->corner[i - 1] + triangles;
     return true;
 }
 
@@ -44,6 +47,23 @@ static bool make_workers(amb_pass *pass)
     return true;
 }
 
+bool raster_reserve_vertices(raster_chunk *chunk, size_t count)
+{
+    return raster_grow(&chunk->x, &chunk->x_capacity, count, sizeof *chunk->x) &&
+           raster_grow(&chunk->y, &chunk->y_capacity, count, sizeof *chunk->y) &&
+           raster_grow(&chunk->vertex, &chunk->vertex_capacity, count * chunk->stride, sizeof *chunk->vertex);
+}
+
+bool raster_reserve_triangles(raster_chunk *chunk, size_t count)
+{
+    raster_triangles *t = &chunk->triangle;
+    uint32_t **array[6] = {&t->v[0], &t->v[1], &t->v[2], &t->primitive_front, &t->low, &t->high};
+    for (int i = 0; i < 6; i++)
+        if (!raster_grow(array[i], &t->capacity[i], count, sizeof(uint32_t)))
+            return false;
+    return true;
+}
+
 /* ---- jobs ------------------------------------------------------------------------------------------------------- */
 
 static void chunk_job(void *user, int index, int thread)
@@ -54,13 +74,14 @@ static void chunk_job(void *user, int index, int thread)
     if (chunk->count == 0)
         return;
     raster_collect(chunk, scratch);
-    size_t words = ((size_t)scratch->unique_count + 16) * chunk->stride;
-    if (!raster_grow(&chunk->vertex, &chunk->vertex_capacity, words, sizeof *chunk->vertex)) {
+    if (!raster_reserve_vertices(chunk, (size_t)scratch->unique_count + 16) ||
+        !raster_reserve_triangles(chunk, (size_t)scratch->corner_count + 16)) {
         scratch->failed = true;
         return;
     }
-    AMB_DISPATCH(amb_context_isa(pass->context), raster_vertices)(pass, chunk, scratch);
-    raster_setup(pass, chunk, scratch);
+    amb_isa isa = amb_context_isa(pass->context);
+    AMB_DISPATCH(isa, raster_vertices)(pass, chunk, scratch);
+    AMB_DISPATCH(isa, raster_setup)(pass, chunk, scratch);
     raster_bin(pass, chunk, scratch);
 }
 
@@ -102,8 +123,7 @@ static bool run_batch(amb_pass *pass)
 static size_t chunk_bytes(const amb_pass *pass, uint32_t triangles, uint32_t stride)
 {
     size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
-    return (tiles + 1) * sizeof(uint32_t) +
-           (size_t)triangles * (3 * stride * sizeof(uint32_t) + sizeof(raster_triangle) + 8);
+    return (tiles + 1) * sizeof(uint32_t) + (size_t)triangles * (3 * (stride + 2) + 6 + 2) * sizeof(uint32_t);
 }
 
 static raster_chunk *next_chunk(amb_pass *pass)
@@ -120,7 +140,7 @@ static bool run_draws(amb_pass *pass)
     size_t bytes = 0;
     for (size_t i = 0; i < pass->draw_count; i++) {
         const raster_draw *draw = &pass->draw[i];
-        uint32_t stride = (4 + (uint32_t)draw->state.varying_floats + 3) & ~3u;
+        uint32_t stride = (2 + (uint32_t)draw->state.varying_floats + 3) & ~3u;
         uint64_t first = 0;
         if (draw->state.vertex && draw->triangles == 0)
             continue;
@@ -142,7 +162,7 @@ static bool run_draws(amb_pass *pass)
             chunk->first = first;
             chunk->count = count;
             chunk->stride = stride;
-            chunk->vertex_count = chunk->triangle_count = chunk->large_count = 0;
+            chunk->vertex_count = chunk->triangle.count = chunk->large_count = 0;
             first += count;
         } while (first < draw->triangles);
     }

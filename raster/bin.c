@@ -6,10 +6,10 @@ typedef struct tile_box {
     uint32_t x0, y0, x1, y1;
 } tile_box;
 
-static tile_box box_of(const raster_triangle *t, unsigned shift)
+static tile_box box_of(const raster_triangles *t, uint32_t i, unsigned shift)
 {
-    return (tile_box){(uint32_t)t->x0 >> shift, (uint32_t)t->y0 >> shift, (uint32_t)t->x1 >> shift,
-                      (uint32_t)t->y1 >> shift};
+    return (tile_box){(t->low[i] & 0xffffu) >> shift, t->low[i] >> 16 >> shift, (t->high[i] & 0xffffu) >> shift,
+                      t->high[i] >> 16 >> shift};
 }
 
 static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) > RASTER_LARGE_TILES; }
@@ -17,8 +17,8 @@ static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) 
 static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
 {
     uint32_t large = 0;
-    for (uint32_t i = 0; i < chunk->triangle_count; i++) {
-        tile_box b = box_of(&chunk->triangle[i], shift);
+    for (uint32_t i = 0; i < chunk->triangle.count; i++) {
+        tile_box b = box_of(&chunk->triangle, i, shift);
         if (is_large(b)) {
             large++;
             continue;
@@ -32,8 +32,8 @@ static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigne
 
 static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
 {
-    for (uint32_t i = chunk->triangle_count; i-- > 0;) { /* backwards: starts move down to their final places */
-        tile_box b = box_of(&chunk->triangle[i], shift);
+    for (uint32_t i = chunk->triangle.count; i-- > 0;) { /* backwards: starts move down to their final places */
+        tile_box b = box_of(&chunk->triangle, i, shift);
         if (is_large(b)) {
             chunk->large[--chunk->large_count] = (uint16_t)i;
             continue;

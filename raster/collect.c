@@ -42,15 +42,14 @@ static void collect_indexed(const raster_chunk *chunk, raster_scratch *scratch)
     const uint32_t limit = draw->state.vertex_count;
     uint32_t instance = (uint32_t)(chunk->first / draw->per_instance);
     uint32_t triangle = (uint32_t)(chunk->first % draw->per_instance);
-    uint32_t *corner = scratch->corner;
+    uint32_t corners = 0;
     forget(scratch);
     for (uint32_t i = 0; i < chunk->count; i++) {
         const uint32_t *index = draw->state.indices + (size_t)triangle * 3;
         if (index[0] < limit && index[1] < limit && index[2] < limit) {
             for (int k = 0; k < 3; k++)
-                corner[k] = local_vertex(scratch, index[k], instance);
-            corner[3] = (uint32_t)chunk->first + i;
-            corner += 4;
+                scratch->corner[k][corners] = local_vertex(scratch, index[k], instance);
+            scratch->corner[3][corners++] = (uint32_t)chunk->first + i;
         } else {
             scratch->stats.triangles_culled++;
         }
@@ -60,7 +59,7 @@ static void collect_indexed(const raster_chunk *chunk, raster_scratch *scratch)
             forget(scratch);
         }
     }
-    scratch->corner_count = (uint32_t)(corner - scratch->corner) / 4;
+    scratch->corner_count = corners;
 }
 
 static void collect_running(const raster_chunk *chunk, raster_scratch *scratch)
@@ -69,14 +68,13 @@ static void collect_running(const raster_chunk *chunk, raster_scratch *scratch)
     uint32_t instance = (uint32_t)(chunk->first / draw->per_instance);
     uint32_t triangle = (uint32_t)(chunk->first % draw->per_instance);
     for (uint32_t i = 0; i < chunk->count; i++) {
-        uint32_t *corner = scratch->corner + (size_t)i * 4;
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t local = scratch->unique_count++;
             scratch->index[local] = (int32_t)(triangle * 3 + k);
             scratch->instance[local] = (int32_t)instance;
-            corner[k] = local;
+            scratch->corner[k][i] = local;
         }
-        corner[3] = (uint32_t)chunk->first + i;
+        scratch->corner[3][i] = (uint32_t)chunk->first + i;
         if (++triangle == draw->per_instance) {
             triangle = 0;
             instance++;

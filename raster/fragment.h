@@ -17,19 +17,41 @@ typedef struct raster_tile {
     amb_pass_stats *stats;
 } raster_tile;
 
-/* What shading needs of a triangle; rebuilt per tile, the same numbers in each. */
+/* What shading needs of a triangle; rebuilt per tile, the same numbers in each, and only when a block is covered. */
 typedef struct raster_shading {
+    const raster_chunk *chunk;
     const amb_draw *draw;
-    const raster_vertex *vertex[3];
+    uint32_t number[3]; /* vertices */
+    uint32_t primitive_front;
     float inverse_area; /* of the edge functions' sum */
+    bool prepared;      /* from here to affine */
+    const raster_vertex *vertex[3];
     float z0, dz1, dz2;
-    float inverse_w[3]; /* scaled so that the largest is 1 */
+    float inverse_w[3]; /* scaled by a power of two so that the largest is in [1, 2) */
     bool affine;        /* all w equal: perspective-correct weights are the screen's */
-    bool front;
-    bool attributes; /* base and delta are filled */
-    int primitive;
+    bool attributes;    /* base and delta are filled */
     float base[AMB_MAX_VARYINGS + 16], delta1[AMB_MAX_VARYINGS + 16], delta2[AMB_MAX_VARYINGS + 16];
 } raster_shading;
+
+static inline void prepare_shading(raster_shading *s)
+{
+    const raster_vertex *v[3];
+    for (int i = 0; i < 3; i++)
+        s->vertex[i] = v[i] = raster_vertex_at(s->chunk, s->number[i]);
+    s->z0 = v[0]->z;
+    s->dz1 = v[1]->z - v[0]->z;
+    s->dz2 = v[2]->z - v[0]->z;
+    float w0 = v[0]->inverse_w, w1 = v[1]->inverse_w, w2 = v[2]->inverse_w;
+    s->affine = w0 == w1 && w1 == w2;
+    float most = amb_s_max(w0, amb_s_max(w1, w2)), scale;
+    uint32_t bits;
+    memcpy(&bits, &most, sizeof bits);
+    bits = (254u << 23) - (bits & 0x7f800000u); /* 1/w is below 2¹²⁷: a normal number remains */
+    memcpy(&scale, &bits, sizeof scale);
+    s->inverse_w[0] = w0 * scale, s->inverse_w[1] = w1 * scale, s->inverse_w[2] = w2 * scale;
+    s->attributes = false;
+    s->prepared = true;
+}
 
 static inline maskx depth_passes(amb_compare compare, f32x z, f32x stored)
 {
@@ -67,17 +89,33 @@ static inline maskx inside_target(const raster_tile *tile, int bx, int by)
            (i_set(by * AMB_BLOCK_H) + i_block_y() < tile->bottom);
 }
 
-static inline f32x blend(amb_blend mode, f32x source, f32x stored, f32x alpha, bool is_alpha)
+static inline void store_plane(float *plane, f32x value, maskx live, bool all)
 {
+    f_store(plane, all ? value : f_sel(live, value, f_load(plane)));
+}
+
+/* One attachment of one block. */
+static inline void store_target(float *plane, int channels, amb_blend mode, const f32x source[4], maskx live, bool all)
+{
+    f32x rest = 1.0f - source[3];
     switch (mode) {
     case AMB_BLEND_ALPHA:
-        return (is_alpha ? alpha : source * alpha) + stored * (1.0f - alpha);
+        for (int c = 0; c < channels; c++) {
+            float *p = plane + c * AMB_LANES;
+            store_plane(p, (c == 3 ? source[3] : source[c] * source[3]) + f_load(p) * rest, live, all);
+        }
+        break;
     case AMB_BLEND_ADD:
-        return source + stored;
+        for (int c = 0; c < channels; c++)
+            store_plane(plane + c * AMB_LANES, source[c] + f_load(plane + c * AMB_LANES), live, all);
+        break;
     case AMB_BLEND_MULTIPLY:
-        return source * stored;
+        for (int c = 0; c < channels; c++)
+            store_plane(plane + c * AMB_LANES, source[c] * f_load(plane + c * AMB_LANES), live, all);
+        break;
     default:
-        return source;
+        for (int c = 0; c < channels; c++)
+            store_plane(plane + c * AMB_LANES, source[c], live, all);
     }
 }
 
@@ -92,11 +130,10 @@ static inline void store_colors(const raster_tile *tile, const amb_draw *draw, f
         const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
         float *plane = block + (size_t)pass->channel_first[i] * AMB_LANES;
         int channels = pass->target.color[i]->channels;
-        for (int c = 0; c < channels; c++, plane += AMB_LANES) {
-            f32x stored = f_load(plane);
-            f32x value = blend(draw->blend[i], source[c], stored, source[3], c == 3);
-            f_store(plane, all ? value : f_sel(live, value, stored));
-        }
+        if (channels == 4) /* the usual case, unrolled */
+            store_target(plane, 4, draw->blend[i], source, live, all);
+        else
+            store_target(plane, channels, draw->blend[i], source, live, all);
     }
 }
 
@@ -119,7 +156,7 @@ static inline void shade_block(const raster_tile *tile, const amb_draw *draw, fl
     if (!m_any(live))
         return;
     if (!draw->depth_write_off)
-        f_store(block, f_sel(live, depth, f_load(block)));
+        store_plane(block, depth, live, false);
     store_colors(tile, draw, block, &out, live);
 }
 
@@ -150,6 +187,8 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
 {
     const amb_draw *draw = s->draw;
     float *block = block_at(tile, bx, by);
+    if (!s->prepared)
+        prepare_shading(s);
     f32x l1 = e[1] * s->inverse_area, l2 = e[2] * s->inverse_area;
     f32x depth = f_saturate((s->z0 + s->dz1 * l1) + s->dz2 * l2);
     maskx live = cover & inside_target(tile, bx, by);
@@ -164,8 +203,8 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     }
     f32x varying[AMB_MAX_VARYINGS + 1];
     amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = depth, .live = live};
-    in.front = m_set(s->front);
-    in.primitive = s->primitive;
+    in.front = m_set(s->primitive_front >> 31 != 0);
+    in.primitive = (int)(s->primitive_front & 0x7fffffffu);
     in.thread = tile->thread;
     block_position(tile, bx, by, &in);
     int floats = draw->varying_floats;

@@ -1,8 +1,9 @@
 /* What the rasterizer's stages share. The way of a triangle:
  *
- *   pass.c        records draws, checks them, cuts them into chunks, runs batches of chunks, then the tiles
- *   vertex_wide.c shades a chunk's vertices, each once, and takes them to the window
- *   setup.c       drops, culls, clips (clip.c) and bounds the chunk's triangles
+ *   pass.c        records draws and checks them; batch.c cuts them into chunks, runs batches of chunks, then the tiles
+ *   collect.c     gathers a chunk's corners, each vertex once
+ *   vertex_wide.c shades those vertices and takes them to the window
+ *   setup_wide.c  drops, culls and bounds the chunk's triangles; setup.c clips (clip.c) those that need it
  *   bin.c         sorts them into the tiles they touch
  *   tile_wide.c   plays all chunks of a batch over one tile: coverage, then fragment.h: depth, shading, blending
  *
@@ -42,39 +43,44 @@ typedef struct raster_draw {
     uint64_t triangles;    /* of all instances; 0 for full-screen draws */
 } raster_draw;
 
-/* A vertex after the vertex stage; the varyings follow, and padding to a multiple of four words. */
+/* A vertex after the vertex stage, without its window position; the varyings follow, and padding to a multiple of four
+ * words. */
 typedef struct raster_vertex {
-    int32_t x, y; /* window, 1/256 pixel */
-    float z;      /* depth 0…1 */
+    float z; /* depth 0…1 */
     float inverse_w;
     float varying[];
 } raster_vertex;
 
-typedef struct raster_triangle {
-    uint32_t v[3];            /* ordered so that the doubled area is positive with y down */
-    uint32_t primitive_front; /* running number in the draw, top bit: front face */
-    uint16_t x0, y0, x1, y1;  /* inclusive bounds of pixels whose centres may be covered, inside the target */
-} raster_triangle;
+/* Triangles left by set-up, one array a member, so that tiles can gather them lanes-wide. */
+typedef struct raster_triangles {
+    uint32_t *v[3];            /* vertex numbers, ordered so that the doubled area is positive with y down */
+    uint32_t *primitive_front; /* running number in the draw, top bit: front face */
+    uint32_t *low, *high;      /* x | y << 16: inclusive bounds, inside the target, of pixels that may be covered */
+    size_t capacity[6];
+    uint32_t count;
+} raster_triangles;
 
 typedef struct raster_chunk {
     const raster_draw *draw;
     uint64_t first; /* triangle of the draw */
     uint32_t count; /* triangles; 0: a full-screen draw */
 
+    int32_t *x, *y;   /* of the vertices: window, 1/256 pixel */
     uint32_t *vertex; /* raster_vertex records of `stride` words each */
     uint32_t stride, vertex_count;
-    size_t vertex_capacity; /* words */
-    raster_triangle *triangle;
-    uint32_t triangle_count;
-    size_t triangle_capacity;
+    size_t x_capacity, y_capacity, vertex_capacity;
+    raster_triangles triangle;
     uint32_t *tile_start; /* tiles + 1: where each tile's entries start */
-    size_t tile_capacity;
-    uint16_t *entry; /* triangle numbers, tile by tile, ascending */
-    size_t entry_capacity;
-    uint16_t *large; /* ascending */
-    size_t large_capacity;
+    uint16_t *entry;      /* triangle numbers, tile by tile, ascending */
+    uint16_t *large;      /* those on many tiles, ascending */
+    size_t tile_capacity, entry_capacity, large_capacity;
     uint32_t large_count;
 } raster_chunk;
+
+static inline raster_vertex *raster_vertex_at(const raster_chunk *chunk, uint32_t number)
+{
+    return (raster_vertex *)(void *)(chunk->vertex + (size_t)number * chunk->stride);
+}
 
 /* One worker's own memory. */
 typedef struct raster_scratch {
@@ -82,8 +88,8 @@ typedef struct raster_scratch {
     uint32_t generation;
     int32_t *index, *instance; /* of the chunk's unique vertices, padded to the lanes */
     float *clip_x, *clip_y, *clip_z, *clip_w;
-    uint8_t *code;
-    uint32_t *corner; /* 4 words a triangle: three local vertices, running number */
+    int32_t *code;
+    uint32_t *corner[4]; /* of the triangles: three local vertices, running number; padded to the lanes */
     uint32_t corner_count, unique_count;
     float *group; /* varyings of one group of vertices, as the shader writes them */
     float *tile;  /* colour and depth of one tile, block by block */
@@ -115,8 +121,13 @@ struct amb_pass {
 /* Doubling growth of an array to at least `needed` elements; false when out of memory. */
 bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_bytes);
 
+/* Room for that many vertices or triangles in all; false when out of memory. */
+bool raster_reserve_vertices(raster_chunk *chunk, size_t count);
+bool raster_reserve_triangles(raster_chunk *chunk, size_t count);
+
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch);
-void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
+/* One triangle the lanes leave alone: clipped, or too large for 32-bit areas. Sets scratch->failed. */
+void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, uint32_t corner);
 void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
 
 typedef struct raster_polygon {

@@ -209,8 +209,14 @@ amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
 
 static void free_chunk(raster_chunk *chunk)
 {
+    free(chunk->x);
+    free(chunk->y);
     free(chunk->vertex);
-    free(chunk->triangle);
+    for (int i = 0; i < 3; i++)
+        free(chunk->triangle.v[i]);
+    free(chunk->triangle.primitive_front);
+    free(chunk->triangle.low);
+    free(chunk->triangle.high);
     free(chunk->tile_start);
     free(chunk->entry);
     free(chunk->large);
@@ -223,7 +229,7 @@ static void free_scratch(raster_scratch *scratch)
     free(scratch->instance);
     free(scratch->clip_x);
     free(scratch->code);
-    free(scratch->corner);
+    free(scratch->corner[0]);
     free(scratch->group);
     free(scratch->tile);
 }

@@ -1,11 +1,6 @@
-/* Triangle set-up: drop, cull, clip, orient and bound. What is left of a triangle is three vertex numbers and a box of
- * pixels; edge functions are made per tile. */
+/* Set-up of the triangles that the lanes of setup_wide.c leave alone: those to be clipped and those too large for
+ * 32-bit areas. Same rules, one at a time. */
 #include "raster/internal.h"
-
-static raster_vertex *vertex_at(const raster_chunk *chunk, uint32_t i)
-{
-    return (raster_vertex *)(void *)(chunk->vertex + (size_t)i * chunk->stride);
-}
 
 static int32_t min3(int32_t a, int32_t b, int32_t c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
 static int32_t max3(int32_t a, int32_t b, int32_t c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
@@ -19,11 +14,12 @@ static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scrat
                          uint32_t primitive)
 {
     const amb_draw *draw = &chunk->draw->state;
-    const raster_vertex *a = vertex_at(chunk, v[0]), *b = vertex_at(chunk, v[1]), *c = vertex_at(chunk, v[2]);
-    int64_t area = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
+    const int32_t *x = chunk->x, *y = chunk->y;
+    const uint32_t a = v[0], b = v[1], c = v[2];
+    int64_t area = (int64_t)(x[b] - x[a]) * (y[c] - y[a]) - (int64_t)(x[c] - x[a]) * (y[b] - y[a]);
     bool front = (area > 0) == draw->front_clockwise; /* y points down: positive is clockwise on the screen */
-    int32_t x0 = first_pixel(min3(a->x, b->x, c->x)), x1 = last_pixel(max3(a->x, b->x, c->x));
-    int32_t y0 = first_pixel(min3(a->y, b->y, c->y)), y1 = last_pixel(max3(a->y, b->y, c->y));
+    int32_t x0 = first_pixel(min3(x[a], x[b], x[c])), x1 = last_pixel(max3(x[a], x[b], x[c]));
+    int32_t y0 = first_pixel(min3(y[a], y[b], y[c])), y1 = last_pixel(max3(y[a], y[b], y[c]));
     x0 = x0 > 0 ? x0 : 0, y0 = y0 > 0 ? y0 : 0;
     x1 = x1 < pass->width - 1 ? x1 : pass->width - 1, y1 = y1 < pass->height - 1 ? y1 : pass->height - 1;
     if (area == 0 || x0 > x1 || y0 > y1 || (draw->cull == AMB_CULL_BACK && !front) ||
@@ -31,12 +27,14 @@ static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scrat
         scratch->stats.triangles_culled++;
         return;
     }
-    raster_triangle *t = &chunk->triangle[chunk->triangle_count++];
-    t->v[0] = v[0];
-    t->v[1] = area > 0 ? v[1] : v[2];
-    t->v[2] = area > 0 ? v[2] : v[1];
-    t->primitive_front = primitive | (front ? 1u << 31 : 0u);
-    t->x0 = (uint16_t)x0, t->y0 = (uint16_t)y0, t->x1 = (uint16_t)x1, t->y1 = (uint16_t)y1;
+    raster_triangles *t = &chunk->triangle;
+    const uint32_t n = t->count++;
+    t->v[0][n] = a;
+    t->v[1][n] = area > 0 ? b : c;
+    t->v[2][n] = area > 0 ? c : b;
+    t->primitive_front[n] = primitive | (front ? 1u << 31 : 0u);
+    t->low[n] = (uint32_t)x0 | (uint32_t)y0 << 16;
+    t->high[n] = (uint32_t)x1 | (uint32_t)y1 << 16;
 }
 
 /* ---- the clipped ones ------------------------------------------------------------------------------------------- */
@@ -56,13 +54,13 @@ static bool make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_
         return false;
     float half_w = 0.5f * (float)pass->width, half_h = 0.5f * (float)pass->height;
     *number = chunk->vertex_count++;
-    raster_vertex *v = vertex_at(chunk, *number);
-    v->x = snap(x / w, half_w, half_w);
-    v->y = snap(y / w, -half_h, half_h);
+    raster_vertex *v = raster_vertex_at(chunk, *number);
+    chunk->x[*number] = snap(x / w, half_w, half_w);
+    chunk->y[*number] = snap(y / w, -half_h, half_h);
     v->z = z / w;
     v->inverse_w = 1.0f / w;
-    const raster_vertex *a = vertex_at(chunk, corner[0]), *b = vertex_at(chunk, corner[1]),
-                        *c = vertex_at(chunk, corner[2]);
+    const raster_vertex *a = raster_vertex_at(chunk, corner[0]), *b = raster_vertex_at(chunk, corner[1]),
+                        *c = raster_vertex_at(chunk, corner[2]);
     for (int k = 0; k < chunk->draw->state.varying_floats; k++) {
         double base = (double)a->varying[k];
         v->varying[k] =
@@ -86,10 +84,8 @@ static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scra
     }
     raster_clip(&polygon, codes, (double)pass->guard_x, (double)pass->guard_y);
     scratch->stats.triangles_clipped++;
-    size_t words = ((size_t)chunk->vertex_count + RASTER_POLYGON) * chunk->stride;
-    if (!raster_grow(&chunk->vertex, &chunk->vertex_capacity, words, sizeof *chunk->vertex) ||
-        !raster_grow(&chunk->triangle, &chunk->triangle_capacity, chunk->triangle_count + (size_t)RASTER_POLYGON,
-                     sizeof *chunk->triangle))
+    if (!raster_reserve_vertices(chunk, (size_t)chunk->vertex_count + RASTER_POLYGON) ||
+        !raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + RASTER_POLYGON))
         return false;
     uint32_t number[RASTER_POLYGON];
     for (int i = 0; i < polygon.count; i++) {
@@ -105,29 +101,19 @@ static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scra
     return true;
 }
 
-void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
+void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, uint32_t n)
 {
-    if (!raster_grow(&chunk->triangle, &chunk->triangle_capacity, scratch->corner_count, sizeof *chunk->triangle)) {
+    const uint32_t corner[4] = {scratch->corner[0][n], scratch->corner[1][n], scratch->corner[2][n],
+                                scratch->corner[3][n]};
+    unsigned c0 = (unsigned)scratch->code[corner[0]], c1 = (unsigned)scratch->code[corner[1]],
+             c2 = (unsigned)scratch->code[corner[2]];
+    unsigned any = c0 | c1 | c2;
+    if ((any & RASTER_INVALID) != 0 || (c0 & c1 & c2) != 0)
+        scratch->stats.triangles_culled++;
+    else if (any != 0)
+        scratch->failed |= !clip_triangle(pass, chunk, scratch, corner, any);
+    else if (raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + 1))
+        add_triangle(pass, chunk, scratch, corner, corner[3]);
+    else
         scratch->failed = true;
-        return;
-    }
-    for (uint32_t i = 0; i < scratch->corner_count; i++) {
-        const uint32_t *corner = scratch->corner + (size_t)i * 4;
-        unsigned c0 = scratch->code[corner[0]], c1 = scratch->code[corner[1]], c2 = scratch->code[corner[2]];
-        unsigned any = c0 | c1 | c2;
-        if (any == 0) {
-            if (!raster_grow(&chunk->triangle, &chunk->triangle_capacity, chunk->triangle_count + (size_t)1,
-                             sizeof *chunk->triangle)) {
-                scratch->failed = true;
-                return;
-            }
-            add_triangle(pass, chunk, scratch, corner, corner[3]);
-        } else if ((any & RASTER_INVALID) != 0 || (c0 & c1 & c2) != 0) {
-            scratch->stats.triangles_culled++;
-        } else if (!clip_triangle(pass, chunk, scratch, corner, any)) {
-            scratch->failed = true;
-            return;
-        }
-    }
-    scratch->stats.triangles_binned += chunk->triangle_count;
 }

@@ -25,21 +25,19 @@ static i32x snap(f32x ndc, f32x scale, f32x offset)
     return f_to_i(f_round((ndc * scale + offset) * (float)RASTER_SUBPIXEL));
 }
 
-static void write_records(const amb_pass *pass, raster_chunk *chunk, uint32_t first, v4x clip, const float *group)
+/* Depth, 1/w and varyings go to one record a vertex. */
+static void write_records(raster_chunk *chunk, uint32_t first, v4x clip, const float *group)
 {
-    const uint32_t floats = (uint32_t)chunk->draw->state.varying_floats;
-    f32x half_w = f_set(0.5f * (float)pass->width), half_h = f_set(0.5f * (float)pass->height);
-    int32_t x[AMB_LANES], y[AMB_LANES];
+    const uint32_t floats = (uint32_t)chunk->draw->state.varying_floats, stride = chunk->stride;
     float z[AMB_LANES], inverse_w[AMB_LANES];
-    i_store(x, snap(clip.x / clip.w, half_w, half_w));
-    i_store(y, snap(clip.y / clip.w, -half_h, half_h));
     f_store(z, clip.z / clip.w);
     f_store(inverse_w, 1.0f / clip.w);
-    for (uint32_t lane = 0; lane < AMB_LANES; lane++) {
-        raster_vertex *v = (raster_vertex *)(void *)(chunk->vertex + (size_t)(first + lane) * chunk->stride);
-        v->x = x[lane], v->y = y[lane], v->z = z[lane], v->inverse_w = inverse_w[lane];
+    float *record = (float *)(void *)(chunk->vertex + (size_t)first * stride);
+    for (uint32_t lane = 0; lane < AMB_LANES; lane++, record += stride) {
+        record[0] = z[lane];
+        record[1] = inverse_w[lane];
         for (uint32_t k = 0; k < floats; k++)
-            v->varying[k] = group[k * AMB_LANES + lane];
+            record[2 + k] = group[k * AMB_LANES + lane];
     }
 }
 
@@ -48,6 +46,7 @@ void raster_vertices(const amb_pass *pass, raster_chunk *chunk, raster_scratch *
     const amb_draw *draw = &chunk->draw->state;
     const uint32_t count = scratch->unique_count;
     const size_t group_bytes = (size_t)draw->varying_floats * AMB_LANES * sizeof(float);
+    const f32x half_w = f_set(0.5f * (float)pass->width), half_h = f_set(0.5f * (float)pass->height);
     chunk->vertex_count = count;
     for (uint32_t i = count; i < count + AMB_LANES - 1 && count > 0; i++) { /* lanes past the end repeat the last */
         scratch->index[i] = scratch->index[count - 1];
@@ -63,8 +62,9 @@ void raster_vertices(const amb_pass *pass, raster_chunk *chunk, raster_scratch *
         f_store(scratch->clip_z + first, out.clip.z);
         f_store(scratch->clip_w + first, out.clip.w);
         i32x code = clip_code(out.clip, f_set(pass->guard_x), f_set(pass->guard_y));
-        for (int lane = 0; lane < AMB_LANES; lane++)
-            scratch->code[first + (uint32_t)lane] = (uint8_t)i_lane(code, lane);
-        write_records(pass, chunk, first, out.clip, scratch->group);
+        i_store(scratch->code + first, code);
+        i_store(chunk->x + first, snap(out.clip.x / out.clip.w, half_w, half_w));
+        i_store(chunk->y + first, snap(out.clip.y / out.clip.w, -half_h, half_h));
+        write_records(chunk, first, out.clip, scratch->group);
     }
 }
