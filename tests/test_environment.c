@@ -1,7 +1,7 @@
 /* Environment maps: orientation, panoramas, irradiance against exact integrals, the same bits everywhere. */
 #include "core/dispatch.h"
 #include "scenes/builtin/builtin.h"
-#include "scenes/builtin/cube_paint.h"
+#include "scenes/builtin/paint.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -12,9 +12,9 @@
 
 #include <cmocka.h>
 
-AMB_DECLARE_WIDE(v3x, test_radiance_linear, (v3x direction, const void *user));
-AMB_DECLARE_WIDE(v3x, amb_sky_radiance, (v3x direction, const void *user));
-AMB_DECLARE_WIDE(v3x, amb_studio_radiance, (v3x direction, const void *user));
+AMB_DECLARE_WIDE(v4x, test_radiance_linear, (v3x direction, const void *user));
+AMB_DECLARE_WIDE(v4x, amb_sky_radiance, (v3x direction, const void *user));
+AMB_DECLARE_WIDE(v4x, amb_studio_radiance, (v3x direction, const void *user));
 
 static const amb_sampler nearest = {.filter = AMB_NEAREST}, smooth = {.filter = AMB_BILINEAR};
 
@@ -45,7 +45,7 @@ static void painted_cubes_look_up_by_direction(void **state)
     (void)state;
     amb_context *context = context_of(AMB_ISA_AUTO, 2);
     amb_texture *cube;
-    amb_radiance radiance = AMB_DISPATCH(amb_context_isa(context), test_radiance_linear);
+    amb_field radiance = AMB_DISPATCH(amb_context_isa(context), test_radiance_linear);
     assert_int_equal(amb_cube_paint(context, 64, 2, radiance, direction_as_colour, &cube, NULL), AMB_OK);
     for (int i = 0; i < 3000; i++) {
         v3 d = spiral(i, 3000), c = sample(cube, &smooth, d);
@@ -64,7 +64,7 @@ static void irradiance_equals_the_exact_integral(void **state)
     (void)state;
     static const float field[12] = {1, 0, 0, 0, 0.8f, 0.5f, -0.2f, 0.1f, 3, -1, 1, 1};
     amb_context *context = context_of(AMB_ISA_AUTO, 2);
-    amb_radiance radiance = AMB_DISPATCH(amb_context_isa(context), test_radiance_linear);
+    amb_field radiance = AMB_DISPATCH(amb_context_isa(context), test_radiance_linear);
     static const int sizes[] = {16, 64, 256};
     for (int s = 0; s < 3; s++) {
         amb_texture *environment, *irradiance;
@@ -115,6 +115,27 @@ static void panoramas_keep_their_directions(void **state)
     amb_context_close(&context);
 }
 
+/* A map painted from a field holds it at the longitude and latitude of every direction, poles and ±180° included. */
+static void painted_maps_look_up_by_longitude_and_latitude(void **state)
+{
+    (void)state;
+    amb_context *context = context_of(AMB_ISA_AUTO, 2);
+    amb_texture *map;
+    amb_field field = AMB_DISPATCH(amb_context_isa(context), test_radiance_linear);
+    assert_int_equal(amb_map_paint(context, 257, 128, 2, field, direction_as_colour, AMB_TEXEL_RGBA32F, &map, NULL),
+                     AMB_OK);
+    static const amb_sampler sampler = {.filter = AMB_BILINEAR, .wrap = {AMB_REPEAT, AMB_CLAMP, AMB_CLAMP}};
+    for (int i = 0; i < 3000; i++) {
+        v3 d = i == 0 ? (v3){0, 1, 0} : i == 1 ? (v3){0, -1, 0} : i == 2 ? (v3){0, 0, 1} : spiral(i, 3000);
+        double u = 0.5 + atan2((double)d.x, -(double)d.z) / 6.283185307179586;
+        double v = acos((double)d.y) / 3.141592653589793;
+        v4x c = amb_sample_2d_lod(map, &sampler, (v2x){(float)u, (float)v}, 0);
+        assert_true(fabsf(c.x - 2 - d.x) < 0.015f && fabsf(c.y - 2 - d.y) < 0.015f && fabsf(c.z - 2 - d.z) < 0.015f);
+    }
+    amb_texture_close(&map);
+    amb_context_close(&context);
+}
+
 /* Both built-in environments, small, on every instruction set and thread count this machine has. */
 static void environments_are_the_same_everywhere(void **state)
 {
@@ -126,7 +147,7 @@ static void environments_are_the_same_everywhere(void **state)
             continue;
         amb_context *context = context_of(isas[k], k + 1);
         for (int e = 0; e < 2; e++) {
-            amb_radiance radiance =
+            amb_field radiance =
                 e ? AMB_DISPATCH(isas[k], amb_studio_radiance) : AMB_DISPATCH(isas[k], amb_sky_radiance);
             amb_texture *cube, *irradiance;
             assert_int_equal(amb_cube_paint(context, 64, 2, radiance, NULL, &cube, NULL), AMB_OK);
@@ -155,6 +176,7 @@ int main(void)
         cmocka_unit_test(painted_cubes_look_up_by_direction),
         cmocka_unit_test(irradiance_equals_the_exact_integral),
         cmocka_unit_test(panoramas_keep_their_directions),
+        cmocka_unit_test(painted_maps_look_up_by_longitude_and_latitude),
         cmocka_unit_test(environments_are_the_same_everywhere),
     };
     return cmocka_run_group_tests_name("environment", tests, NULL, NULL);

@@ -1,9 +1,9 @@
 #include "core/dispatch.h"
 #include "scenes/builtin/builtin.h"
-#include "scenes/builtin/cube_paint.h"
+#include "scenes/builtin/paint.h"
 
-AMB_DECLARE_WIDE(v3x, amb_sky_radiance, (v3x direction, const void *user));
-AMB_DECLARE_WIDE(v3x, amb_studio_radiance, (v3x direction, const void *user));
+AMB_DECLARE_WIDE(v4x, amb_sky_radiance, (v3x direction, const void *user));
+AMB_DECLARE_WIDE(v4x, amb_studio_radiance, (v3x direction, const void *user));
 
 enum { ENVIRONMENT_SIZE = 512 };
 

@@ -1,12 +1,12 @@
 /* An evening sky over a calm sea as an HDR environment: a low sun with its glow, a warm horizon, high clouds lit from
  * below, and water that mirrors it all. Colours are tuned by eye to photographs of clear evenings with the sun about
  * seven degrees up; nothing here claims to be a sky model. */
-#include "scenes/builtin/cube_paint.h"
+#include "scenes/builtin/paint.h"
 
 #include <ambiance/math.h>
 #include <ambiance/noise.h>
 
-v3x WIDE(amb_sky_radiance)(v3x direction, const void *user);
+v4x WIDE(amb_sky_radiance)(v3x direction, const void *user);
 
 static const v3 to_sun = {-0.5906f, 0.1219f, -0.7977f}; /* unit: azimuth to the left of -z, 7° up */
 
@@ -108,7 +108,7 @@ static v3x sea_below(v3x direction)
     return v3x_lerp(water, horizon, haze);
 }
 
-v3x WIDE(amb_sky_radiance)(v3x direction, const void *user)
+v4x WIDE(amb_sky_radiance)(v3x direction, const void *user)
 {
     (void)user;
     maskx above = direction.y > 0.0f;
@@ -117,5 +117,5 @@ v3x WIDE(amb_sky_radiance)(v3x direction, const void *user)
         radiance = sky_above(direction, true);
     if (!m_all(above))
         radiance = v3x_sel(above, radiance, sea_below(direction));
-    return radiance;
+    return v4x_of3(radiance, f_set(1.0f));
 }

@@ -1,10 +1,10 @@
 /* A photographer's dark studio as an HDR environment: soft boxes around a subject at the origin. Light shapes are what
  * polished metal shows, so each box has a soft edge, a brighter heart and its own colour temperature. */
-#include "scenes/builtin/cube_paint.h"
+#include "scenes/builtin/paint.h"
 
 #include <ambiance/math.h>
 
-v3x WIDE(amb_studio_radiance)(v3x direction, const void *user);
+v4x WIDE(amb_studio_radiance)(v3x direction, const void *user);
 
 /* A rectangular light on a plane: centre, half axes (orthogonal), radiance at its heart, relative softness of its edge.
  */
@@ -53,11 +53,11 @@ static v3x room(v3x direction)
     return v3x_add(colour, v3x_scale(v3x_splat((v3){0.12f, 0.105f, 0.09f}), floor));
 }
 
-v3x WIDE(amb_studio_radiance)(v3x direction, const void *user)
+v4x WIDE(amb_studio_radiance)(v3x direction, const void *user)
 {
     (void)user;
     v3x radiance = room(direction);
     for (size_t i = 0; i < sizeof boxes / sizeof *boxes; i++)
         radiance = v3x_add(radiance, box_light(&boxes[i], direction));
-    return radiance;
+    return v4x_of3(radiance, f_set(1.0f));
 }
