@@ -28,6 +28,7 @@ typedef struct mlaa_work {
     const amb_image *color;
     const amb_context *context;
     float gain, threshold; /* light is multiplied by gain for detection; threshold in CIE Lab distance */
+    float corners;         /* weights are multiplied by this at the corners of long crossing lines */
     int tiles_x, tiles_y;
     size_t row_words, column_words;
     uint64_t *right, *down;               /* [y][row_words] */

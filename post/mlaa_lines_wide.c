@@ -44,6 +44,7 @@ static int run_last(const uint64_t *line, int at, int words)
 /* Lines along rows have sides above and below, lines along columns left and right; a is the first of each. */
 typedef struct line_bits {
     const uint64_t *line, *cross_a, *cross_b; /* the discontinuities that cross it, on either side */
+    const uint64_t *beyond_a, *beyond_b;      /* where those go on, one pixel further; NULL outside the image */
     int words;
 } line_bits;
 
@@ -53,10 +54,18 @@ AMB_INLINE unsigned crossings(const line_bits *b, int at)
     return bit_at(b->cross_a, at) | bit_at(b->cross_b, at) << 1;
 }
 
+/* What the trapezium's area is multiplied by when side 1 or 2 is crossed there. */
+AMB_INLINE float share_of(const line_bits *b, unsigned side, int at, float corners)
+{
+    const uint64_t *beyond = side == 1 ? b->beyond_a : b->beyond_b;
+    return beyond && bit_at(beyond, at) ? corners : 1.0f;
+}
+
 typedef struct line_place { /* where a line lies in its tile */
     mlaa_tile_memory *memory;
     int side_a, side_b; /* row or column of the pixels at either side; outside 0…63: of another tile */
     int first;          /* the line's discontinuity at the tile's first column or row */
+    float corners;
 } line_place;
 
 /* One pixel of a line gets its weight; `side` as of crossings, one alone. */
@@ -79,12 +88,16 @@ AMB_INLINE void put_run(const line_bits *b, const line_place *place, bool vertic
 {
     int length = last - first + 1, half = length / 2; /* the middle of an odd line has no area */
     unsigned before = crossings(b, first - 1), after = crossings(b, last);
-    if (before == 1 || before == 2)
+    if (before == 1 || before == 2) {
+        float share = share_of(b, before, first - 1, place->corners);
         for (int at = from; at <= to && at - first < half; at++)
-            put_weight(place, vertical, before, at, trapezium(at - first, length));
-    if (after == 1 || after == 2)
+            put_weight(place, vertical, before, at, trapezium(at - first, length) * share);
+    }
+    if (after == 1 || after == 2) {
+        float share = share_of(b, after, last, place->corners);
         for (int at = to; at >= from && last - at < half; at--)
-            put_weight(place, vertical, after, at, trapezium(last - at, length));
+            put_weight(place, vertical, after, at, trapezium(last - at, length) * share);
+    }
 }
 
 /* The same of a longer run, whose pixels do not all see both ends. */
@@ -94,9 +107,11 @@ AMB_INLINE void put_long_run(const line_bits *b, const line_place *place, bool v
     for (int at = from; at <= to; at++) {
         int back = at - first < MLAA_REACH ? at - first : MLAA_REACH;
         int ahead = last - at < MLAA_REACH ? last - at : MLAA_REACH;
-        unsigned side = back < ahead ? crossings(b, at - back - 1) : ahead < back ? crossings(b, at + ahead) : 0;
+        int end = back < ahead ? at - back - 1 : at + ahead, near = back < ahead ? back : ahead;
+        unsigned side = back == ahead ? 0 : crossings(b, end);
         if (side == 1 || side == 2)
-            put_weight(place, vertical, side, at, trapezium(back < ahead ? back : ahead, back + ahead + 1));
+            put_weight(place, vertical, side, at,
+                       trapezium(near, back + ahead + 1) * share_of(b, side, end, place->corners));
     }
 }
 
@@ -131,8 +146,10 @@ static void put_rows(const mlaa_work *work, mlaa_tile_memory *memory, int x0, in
         line_bits bits = {.line = work->down + (size_t)y * words,
                           .cross_a = work->right + (size_t)y * words,
                           .cross_b = work->right + (size_t)(y + 1) * words,
+                          .beyond_a = y > 0 ? work->right + (size_t)(y - 1) * words : NULL,
+                          .beyond_b = y + 2 < work->color->height ? work->right + (size_t)(y + 2) * words : NULL,
                           .words = (int)words};
-        line_place place = {memory, side, side + 1, x0};
+        line_place place = {memory, side, side + 1, x0, work->corners};
         put_word(&bits, &place, false);
     }
 }
@@ -147,8 +164,10 @@ static void put_columns(const mlaa_work *work, mlaa_tile_memory *memory, int x0,
         line_bits bits = {.line = work->right_column + (size_t)x * words,
                           .cross_a = work->down_column + (size_t)x * words,
                           .cross_b = work->down_column + (size_t)(x + 1) * words,
+                          .beyond_a = x > 0 ? work->down_column + (size_t)(x - 1) * words : NULL,
+                          .beyond_b = x + 2 < work->color->width ? work->down_column + (size_t)(x + 2) * words : NULL,
                           .words = (int)words};
-        line_place place = {memory, side, side + 1, y0};
+        line_place place = {memory, side, side + 1, y0, work->corners};
         put_word(&bits, &place, true);
     }
 }

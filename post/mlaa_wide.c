@@ -17,7 +17,7 @@
 #define ROW_GROUPS (ROW_FLOATS / AMB_LANES)
 
 typedef struct mlaa_params {
-    float threshold, exposure;
+    float threshold, exposure, corners;
 } mlaa_params;
 
 /* clang-format off */
@@ -26,6 +26,8 @@ static const amb_param mlaa_table[] = {
      "CIE Lab distance above which two neighbours have an edge between them"},
     {"exposure", AMB_PARAM_FLOAT, "stops", -20.0f, 20.0f, {0.0f}, NULL, offsetof(mlaa_params, exposure),
      "that of the display to come: detection sees light times 2 to this power, clamped to 0..1"},
+    {"corners", AMB_PARAM_FLOAT, "", 0.0f, 1.0f, {0.25f}, NULL, offsetof(mlaa_params, corners),
+     "share of blending kept along lines that end at a square corner; 1 is plain MLAA, which rounds text"},
 };
 /* clang-format on */
 
@@ -35,7 +37,7 @@ static const amb_param mlaa_table[] = {
  * and one of second, without division. */
 AMB_INLINE f32x lab_root(f32x t)
 {
-    f32x y = f_from_bits(0x548c2b4b - f_to_i(i_to_f(f_bits(t)) * 0.333333343f));
+    f32x y = f_from_bits(0x54a22b4b - f_to_i(i_to_f(f_bits(t)) * 0.333333343f));
     f32x e = 1.0f - t * y * y * y;
     y = y + y * e * (e * 0.222222222f + 0.333333333f);
     e = 1.0f - t * y * y * y;
@@ -234,7 +236,7 @@ static amb_status mlaa_layers(const amb_post_job *job, mlaa_work *work, amb_erro
 static amb_status mlaa_apply(const amb_post_job *job, amb_error *error)
 {
     const mlaa_params *p = job->params;
-    mlaa_work work = {.color = job->color, .context = job->context, .threshold = p->threshold};
+    mlaa_work work = {.color = job->color, .context = job->context, .threshold = p->threshold, .corners = p->corners};
     work.gain = amb_exp2(p->exposure);
     work.tiles_x = (job->color->width + MLAA_TILE - 1) / MLAA_TILE;
     work.tiles_y = (job->color->height + MLAA_TILE - 1) / MLAA_TILE;
