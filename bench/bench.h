@@ -1,0 +1,53 @@
+/* Benchmarks: one workload a file, each ending in one const descriptor; workloads.c has a line for each.
+ *
+ * Every workload is timed over a grid of instruction sets and thread counts and, where it has one, against a peer: the
+ * same work written in GLSL and run by Mesa's llvmpipe on the same cores in the same process. Rows alternate, round by
+ * round, so that a change of the machine's clock or load meets them all. */
+#ifndef AMB_BENCH_BENCH_H
+#define AMB_BENCH_BENCH_H
+
+#include "bench/gl.h"
+
+#include <ambiance/context.h>
+#include <ambiance/image.h>
+#include <stdbool.h>
+
+typedef struct bench_options {
+    bool quick;        /* fewer rounds and a quarter of the pixels */
+    int width, height; /* of pictures */
+    int threads;       /* the larger thread count of the grid */
+    gl *peer;          /* NULL: no peer is available */
+} bench_options;
+
+typedef struct bench_count {
+    double flops; /* + − × ÷ √ of one run; 0: not counted */
+    double bytes; /* moved to and from memory at least; 0: not counted */
+    double items; /* what `unit` names, of one run; 0: none */
+    const char *unit;
+} bench_count;
+
+typedef struct bench_workload {
+    const char *name, *about;
+    amb_status (*open)(const bench_options *options, void **state, amb_error *error);
+    /* Once, start to finish. */
+    amb_status (*run)(void *state, const amb_context *context, amb_error *error);
+    /* The same work on the peer, finished when it returns. NULL: there is no such thing. */
+    amb_status (*run_peer)(void *state, amb_error *error);
+    /* Root mean square difference of the two last pictures, per channel: how far both did the same work. */
+    amb_status (*difference)(void *state, double *rmse, amb_error *error);
+    /* Of one run on a context; may be NULL. */
+    bench_count (*count)(const void *state, const amb_context *context);
+    void (*close)(void *state);     /* NULL is allowed */
+    double peer_goal;               /* times the peer's speed that we aim at; 0: none */
+    double threads_goal, wide_goal; /* all threads against one; v3 against v2; 0: none */
+} bench_workload;
+
+extern const bench_workload *const bench_workloads[]; /* NULL-ended; the first two measure the machine's peaks */
+extern const bench_workload bench_flops, bench_copy, bench_mesh;
+
+double bench_seconds(void); /* a clock that only goes forward */
+/* Root mean square difference of the first three channels of a planar image and interleaved RGBA pixels, rows from the
+ * bottom as GL reads them. */
+double bench_rmse(const amb_image *image, const float *rgba);
+
+#endif
