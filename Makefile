@@ -156,6 +156,18 @@ fuzz-run: $(FUZZERS)
 	        -artifact_prefix=$(BUILD)/corpus/$$name- $(BUILD)/corpus/$$name $$(ls -d tests/data/$$name 2>/dev/null) \
 	        > $$f.log 2>&1 && grep -E 'number_of_executed_units' $$f.log || { tail -n 40 $$f.log; exit 1; }; done
 
+# The manifest publishes the hash of every scene's pixels; changing it is a reviewed change.
+.PHONY: golden golden-update golden-check
+$(BUILD)/golden: $(BUILD)/obj/tests/golden/golden.o $(BUILD)/libambiance.a
+	@echo "  ld    $@"; $(CC) -o $@ $^ $(LDFLAGS) $(LDLIBS)
+golden-check: $(BUILD)/golden
+	$(BUILD)/golden check tests/golden/manifest
+golden: ## re-render the manifest: {gcc, clang} x {v2, v3, v4} x {1, 2, 5 threads}
+	$(MAKE) CC=clang golden-check
+	$(MAKE) CC=gcc BUILD=$(BUILD)/gcc golden-check
+golden-update: $(BUILD)/golden ## rewrite the manifest from this build
+	$(BUILD)/golden update tests/golden/manifest
+
 # ---- jobs -----------------------------------------------------------------------------------------------------------
 .PHONY: help deps assets demo bench lint format clean
 help: ## this list
