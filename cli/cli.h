@@ -101,8 +101,8 @@ int read_frame(const char *path, amb_frame **out);
 /* "R", "G", …: of channel `channel` of a layer of `channels`; "X", "Y" for one or two. */
 const char *channel_name(int channels, int channel);
 
-/* Can `path` be written: .exr or .png, in a folder that exists, not over a folder or device? Checked before hours of
- * rendering, not after. */
+/* Can `path` be written: .exr or .png, in a folder that exists, not over a folder? Checked before hours of rendering,
+ * not after. */
 int check_output(const char *path);
 bool is_png(const char *path);
 

@@ -118,8 +118,12 @@ int check_output(const char *path)
     struct stat info;
     if (!is_png(path) && !has_extension(path, ".exr"))
         return fail(EXIT_USAGE, "output: %s; allowed: names that end in .exr or .png", path);
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        return fail(EXIT_FILES, "output: %s; it exists and is not a regular file", path);
+    if (stat(path, &info) == 0) {
+        if (S_ISDIR(info.st_mode))
+            return fail(EXIT_FILES, "output: %s; it is a folder, a file is expected", path);
+        if (access(path, W_OK) != 0)
+            return fail(EXIT_FILES, "output: %s; %s", path, strerror(errno));
+    }
     char *copy = strdup(path);
     if (!copy)
         return fail(EXIT_FILES, "out of memory");
