@@ -32,6 +32,7 @@ typedef struct settings {
     bench_options options;
     int rounds;
     bool json;
+    amb_isa only; /* AUTO: every one there is */
     int filters;
     char **filter;
 } settings;
@@ -75,7 +76,7 @@ static amb_status add_rows(const settings *set, report *r, amb_error *error)
         r->row[r->rows++] = (row){.threads = set->options.threads};
     for (int t = 0; t < (set->options.threads > 1 ? 2 : 1); t++)
         for (size_t i = 0; i < sizeof isas / sizeof *isas; i++) {
-            if (!amb_isa_available(isas[i]))
+            if (!amb_isa_available(isas[i]) || (set->only && set->only != isas[i]))
                 continue;
             row *n = &r->row[r->rows++];
             *n = (row){.isa = isas[i], .threads = t ? set->options.threads : 1};
@@ -262,8 +263,10 @@ static void print_json(const settings *set, const report *reports, int count)
 
 static void usage(FILE *to)
 {
-    fprintf(to, "usage: ambiance-bench [--quick] [--json] [--rounds N] [--size WxH] [--threads N] [workload "
-                "...]\n\nworkloads:\n");
+    fprintf(
+        to,
+        "usage: ambiance-bench [--quick] [--json] [--rounds N] [--size WxH] [--threads N] [--isa NAME] [workload ...]"
+        "\n\nworkloads:\n");
     for (int i = 0; bench_workloads[i]; i++)
         fprintf(to, "  %-10s %s\n", bench_workloads[i]->name, bench_workloads[i]->about);
 }
@@ -279,13 +282,10 @@ static bool chosen(const settings *set, const bench_workload *w)
 /* 0, or the exit code plus 1. */
 static int read_options(int argc, char **argv, settings *set)
 {
-    static const struct option names[] = {{"quick", no_argument, 0, 'q'},
-                                          {"json", no_argument, 0, 'j'},
-                                          {"rounds", required_argument, 0, 'r'},
-                                          {"size", required_argument, 0, 's'},
-                                          {"threads", required_argument, 0, 't'},
-                                          {"help", no_argument, 0, 'h'},
-                                          {0, 0, 0, 0}};
+    static const struct option names[] = {{"quick", no_argument, 0, 'q'},         {"json", no_argument, 0, 'j'},
+                                          {"rounds", required_argument, 0, 'r'},  {"size", required_argument, 0, 's'},
+                                          {"threads", required_argument, 0, 't'}, {"help", no_argument, 0, 'h'},
+                                          {"isa", required_argument, 0, 'i'},     {0, 0, 0, 0}};
     int rounds = 0, width = 0, height = 0;
     char rest;
     for (int c; (c = getopt_long(argc, argv, "h", names, NULL)) != -1;) {
@@ -308,6 +308,9 @@ static int read_options(int argc, char **argv, settings *set)
             good = sscanf(optarg, "%d%c", &set->options.threads, &rest) == 1 && set->options.threads >= 1 &&
                    set->options.threads <= 1024;
             break;
+        case 'i':
+            good = amb_isa_parse(optarg, &set->only, NULL) == AMB_OK;
+            break;
         case 'h':
             usage(stdout);
             return 1;
@@ -319,6 +322,7 @@ static int read_options(int argc, char **argv, settings *set)
             fprintf(stderr, "ambiance-bench: bad value '%s' for --%s\n", optarg,
                     c == 'r'   ? "rounds (1 to 101)"
                     : c == 's' ? "size (16x16 to 8192x8192)"
+                    : c == 'i' ? "isa (v2, v3, v4, auto)"
                                : "threads (1 to 1024)");
             return 3;
         }

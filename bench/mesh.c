@@ -12,7 +12,7 @@
 
 AMB_DECLARE_WIDE(const mesh_shaders *, mesh_shaders_get, (void));
 
-enum { RINGS = 224, SEGMENTS = 224, TEXTURE = 2048, CUBE = 256 };
+enum { RINGS = 225, SEGMENTS = 224, TEXTURE = 2048, CUBE = 256 };
 
 typedef struct peer_mesh {
     gl_target target;
