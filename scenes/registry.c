@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-#define SCENES(X)
+#define SCENES(X) \
+    X(lucy)
 
 #if defined(__x86_64__)
 #define DECLARE(name) extern const amb_scene amb_scene_##name##_x4, amb_scene_##name##_x8, amb_scene_##name##_x16;
