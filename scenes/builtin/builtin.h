@@ -12,10 +12,31 @@ amb_status amb_builtin_sky(const amb_context *context, amb_texture **out, amb_er
 amb_status amb_builtin_studio(const amb_context *context, amb_texture **out,
                               amb_error *error); /* soft boxes, dark room */
 
-/* The statue of scene lucy: a winged Victory with torch and wreath on a plinth. World units: the figure is about 1 tall,
- * its feet at y = 0, y up, facing +z; the plinth reaches down to y = -0.135. Unit normals, no UVs; about 650,000
+/* The statue of scene lucy: a winged Victory with torch and wreath on a plinth. World units: the figure is about 1
+ * tall, its feet at y = 0, y up, facing +z; the plinth reaches down to y = -0.135. Unit normals, no UVs; about 650,000
  * triangles, a closed manifold. Errors: MEMORY. */
 amb_status amb_builtin_statue(const amb_context *context, amb_mesh **out, amb_error *error);
+
+/* Latitude-longitude maps, 2048×1024 with mips: linear albedo (colour), 0…1 otherwise. */
+amb_status amb_builtin_earth_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_earth_height(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_earth_water(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_earth_night(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_earth_clouds(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_venus_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_mars_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_mars_height(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_pluto_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_pluto_gloss(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_jupiter_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_saturn_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_uranus_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_neptune_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_sun_colour(const amb_context *context, amb_texture **out, amb_error *error);
+/* Saturn's rings by radius (rings.h), 4096×1: tint and opacity; back-, forward- and unlit-scattered intensity in r, g,
+ * b. */
+amb_status amb_builtin_saturn_rings(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_saturn_ring_scatter(const amb_context *context, amb_texture **out, amb_error *error);
 
 /* A latitude-longitude panorama (its centre looks along -z, +x to the right) as an RGBA16F cube map of size² faces. */
 amb_status amb_panorama_to_cube(const amb_context *context, const amb_texture *panorama, int size, amb_texture **out,
