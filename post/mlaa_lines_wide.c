@@ -202,6 +202,15 @@ static void blend_pixel(const mlaa_work *work, size_t at, const float weight[4],
     }
 }
 
+/* The pixels that row y of the tile at (x0, y0) will need soon. */
+static void fetch_row(const mlaa_work *work, const mlaa_tile_memory *memory, int x0, int y0, int y)
+{
+    for (int x = 0; x < MLAA_TILE && y < MLAA_TILE; x += 16)
+        if (memory->dirty[y] >> x & 0xffff)
+            for (int c = 0; c < 3; c++)
+                __builtin_prefetch(amb_image_row(work->color, c, y0 + y) + x0 + x);
+}
+
 static void blend_tile(void *user, int index, int thread)
 {
     const mlaa_work *work = user;
@@ -213,6 +222,7 @@ static void blend_tile(void *user, int index, int thread)
         put_columns(work, memory, x0, y0);
     }
     for (int y = 0; y < MLAA_TILE; y++) {
+        fetch_row(work, memory, x0, y0, y + 4);
         for (uint64_t bits = memory->dirty[y]; bits; bits &= bits - 1) {
             int x = __builtin_ctzll(bits);
             float weight[4];

@@ -75,8 +75,10 @@ static void load_row(const mlaa_work *work, int x, int y, int count, row_cache *
     int here = count + 1 < work->color->width - x ? count + 1 : work->color->width - x;
     for (int c = 0; c < 3; c++) {
         const float *from = amb_image_row(work->color, c, y) + x;
-        for (int i = 0; i < count; i += AMB_LANES)
+        for (int i = 0; i < count; i += AMB_LANES) {
+            __builtin_prefetch(from + work->color->stride + i); /* short pieces of rows escape the prefetcher */
             f_store(row->rgb[c] + i, f_clamp(f_load(from + i) * work->gain, zero, one));
+        }
         if (here > count) { /* by lanes, so that the arithmetic is the same */
             f32x last = f_clamp(f_set(from[count]) * work->gain, zero, one);
             f_store(row->rgb[c] + count, last);
@@ -92,22 +94,37 @@ AMB_INLINE v3x load3(float (*plane)[ROW_FLOATS], int i)
     return (v3x){f_load(plane[0] + i), f_load(plane[1] + i), f_load(plane[2] + i)};
 }
 
-static void know_lab(row_cache *row, int group)
+/* A group's Lab, computed when first asked for. */
+AMB_INLINE v3x know_lab(row_cache *row, int group)
 {
-    if (row->known[group])
-        return;
     int i = group * AMB_LANES;
+    if (row->known[group])
+        return load3(row->lab, i);
     v3x lab = lab_of(load3(row->rgb, i));
     f_store(row->lab[0] + i, lab.x);
     f_store(row->lab[1] + i, lab.y);
     f_store(row->lab[2] + i, lab.z);
     row->known[group] = 1;
+    return lab;
 }
 
-/* Can these neighbours be further apart than the threshold? The slope of lab_curve is at most that at the darkest
- * channel m: 1/(0.1284 + 2.897·(m - 0.00886)) bounds it from above (the inverse slope 3·m^⅔ is concave, so its chord
- * lies below). X, Y and Z move by no more than the largest channel does, so by the weights of L, a and b the distance
- * is at most √(116² + 1000² + 400²) times slope times that. A hundredth is left for rounding. */
+/* Lanes 1… of a, then lane 0 of b: the right neighbours. In registers, as the stores are still under way. */
+AMB_INLINE f32x shifted(f32x a, f32x b)
+{
+#if AMB_LANES == 4
+    return __builtin_shufflevector(a, b, 1, 2, 3, 4);
+#elif AMB_LANES == 8
+    return __builtin_shufflevector(a, b, 1, 2, 3, 4, 5, 6, 7, 8);
+#else
+    return __builtin_shufflevector(a, b, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16);
+#endif
+}
+
+/* Can these neighbours be further apart than the threshold? With d the largest change of a channel and s the slope of
+ * lab_curve at the darkest channel, none of its three values changes by more than s·d. Two that change the same way
+ * differ in their change by no more than that; X and Y can change by at most 0.68·d when they go opposite ways,
+ * together, Y and Z by 1.61·d. So |ΔL| ≤ 116·s·d, |Δa| ≤ 500·s·d, |Δb| ≤ 322·s·d, in all 606·s·d. The inverse slope,
+ * 3·t^⅔, is concave: its chord from (0.00886, 0.1284) to (1, 3) lies below it. A hundredth is left for rounding. */
 AMB_INLINE maskx may_differ(v3x a, v3x b, f32x a_darkest, float scale)
 {
     f32x move = f_max(f_abs(a.x - b.x), f_max(f_abs(a.y - b.y), f_abs(a.z - b.z)));
@@ -126,7 +143,7 @@ AMB_INLINE maskx is_far(v3x a, v3x b, float threshold)
 AMB_INLINE void detect_group(row_cache *row, row_cache *next, int group, float threshold, uint64_t *r, uint64_t *d)
 {
     int i = group * AMB_LANES;
-    float scale = 1083.3f / (0.99f * threshold);
+    float scale = 606.0f / (0.99f * threshold);
     v3x here = load3(row->rgb, i);
     f32x darkest = f_min(here.x, f_min(here.y, here.z));
     maskx right = may_differ(here, load3(row->rgb, i + 1), darkest, scale);
@@ -134,16 +151,14 @@ AMB_INLINE void detect_group(row_cache *row, row_cache *next, int group, float t
     *r = *d = 0;
     if (!m_any(right | down))
         return;
-    know_lab(row, group);
-    here = load3(row->lab, i);
+    here = know_lab(row, group);
     if (m_any(right)) {
-        know_lab(row, group + 1);
-        *r = m_bits(is_far(here, load3(row->lab, i + 1), threshold));
+        v3x after = know_lab(row, group + 1);
+        after = (v3x){shifted(here.x, after.x), shifted(here.y, after.y), shifted(here.z, after.z)};
+        *r = m_bits(is_far(here, after, threshold));
     }
-    if (m_any(down)) {
-        know_lab(next, group);
-        *d = m_bits(is_far(here, load3(next->lab, i), threshold));
-    }
+    if (m_any(down))
+        *d = m_bits(is_far(here, know_lab(next, group), threshold));
 }
 
 static void detect_row(const mlaa_work *work, int x, int y, int count, row_cache *row, row_cache *next)
