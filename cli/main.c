@@ -60,6 +60,8 @@ static int run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    static char buffer[1 << 18]; /* so that a full device is met by the flush at the end, which can say why */
+    setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
     signal(SIGXFSZ, SIG_IGN); /* a file over the size limit is then a failed write, with its line, not a crash */
     return finish_output(run(argc, argv));
 }

@@ -1,6 +1,6 @@
 /* The program as a person or a script meets it: every mistake is one line and the right exit code, no run leaves half a
  * file, and no option that may not change pixels does. Runs $AMBIANCE (build/ambiance when unset) through the shell in
- * a folder of its own, where $A is the program and $S a scene. */
+ * a folder of its own, where $A is the program (under a time limit), $P the bare program and $S a scene. */
 #include <ctype.h>
 #include <limits.h>
 #include <setjmp.h>
@@ -239,7 +239,7 @@ static void killed_in_mid_write(void **state)
     succeeds("$A render $S --assets builtin --size 640x480 --quiet -o whole.exr");
     succeeds("printf old >old; cp old hit.exr");
     result r = run("seen=0; for i in 1 2 3 4 5 6; do\n"
-                   "$A render $S --assets builtin --size 640x480 --quiet -o hit.exr & p=$!\n"
+                   "$P render $S --assets builtin --size 640x480 --quiet -o hit.exr & p=$!\n"
                    "n=0; while kill -0 $p 2>/dev/null; do n=$((n + 1))\n"
                    "  if ls -A | grep -q '^.hit.exr.*ambiance-tmp$'; then seen=$((seen + 1)); break; fi\n"
                    "done\n"
@@ -375,11 +375,13 @@ static char folder[] = "/tmp/ambiance-test-XXXXXX";
 static int enter(void **state)
 {
     (void)state;
-    static char program[PATH_MAX], scene[64];
+    static char program[PATH_MAX], limited[PATH_MAX + 16], scene[64];
     const char *named = getenv("AMBIANCE");
     if (!realpath(named ? named : "build/ambiance", program) || !mkdtemp(folder) || chdir(folder) != 0)
         return -1;
-    setenv("A", program, 1);
+    snprintf(limited, sizeof limited, "timeout 100 %s", program); /* a hang is a failure, not a wait */
+    setenv("A", limited, 1);
+    setenv("P", program, 1);
     unsetenv("AMBIANCE_ASSETS");
     unsetenv("AMBIANCE_PACK");
     result r = run("$A list --names");
