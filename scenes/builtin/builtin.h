@@ -12,6 +12,12 @@ amb_status amb_builtin_sky(const amb_context *context, amb_texture **out, amb_er
 amb_status amb_builtin_studio(const amb_context *context, amb_texture **out,
                               amb_error *error); /* soft boxes, dark room */
 
+/* The night sky: RGBA16F, 4096 × 2048, mips; a panorama (its centre looks along -z, +x to the right) of 60,000 stars
+ * and the Milky Way; linear radiance. */
+amb_status amb_builtin_stars(const amb_context *context, amb_texture **out, amb_error *error);
+/* The map of Mercury: sRGB8_A8, 4096 × 2048, longitude-latitude, north on top. */
+amb_status amb_builtin_mercury(const amb_context *context, amb_texture **out, amb_error *error);
+
 /* The statue of scene lucy: a winged Victory with torch and wreath on a plinth. World units: the figure is about 1
  * tall, its feet at y = 0, y up, facing +z; the plinth reaches down to y = -0.135. Unit normals, no UVs; about 650,000
  * triangles, a closed manifold. Errors: MEMORY. */
