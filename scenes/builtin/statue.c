@@ -10,8 +10,8 @@ AMB_DECLARE_WIDE(void, amb_statue_desc, (amb_isosurface_desc * desc));
 typedef struct bone {
     v2 a, b, c;
 } bone; /* of the wing, in its plane, as in statue_wings_wide.c */
-static const bone inner_bone = {{-0.01f, -0.03f}, {0.02f, 0.15f}, {0.14f, 0.215f}};
-static const bone outer_bone = {{0.14f, 0.215f}, {0.225f, 0.26f}, {0.285f, 0.15f}};
+static const bone inner_bone = {{-0.01f, -0.03f}, {0.015f, 0.19f}, {0.15f, 0.265f}};
+static const bone outer_bone = {{0.15f, 0.265f}, {0.245f, 0.32f}, {0.315f, 0.215f}};
 
 static v2 bone_point(const bone *on, float t)
 {
@@ -36,13 +36,16 @@ static void add_row(statue_model *model, const row *r)
         float angle = r->angle0 + (r->angle1 - r->angle0) * s;
         v2 at = arm_point(r->t0 + (r->t1 - r->t0) * s), along = {amb_sin(angle), -amb_cos(angle)};
         at = v2_add(at, v2_scale(along, r->setback0 + (r->setback1 - r->setback0) * s));
+        float outer = 1.0f - s, length = r->length0 + (r->length1 - r->length0) * s;
+        if (r->t0 > 1.0f) /* the hand's feathers: the outermost are shorter, which rounds the wing */
+            length *= 1.0f - 0.11f * outer * outer * outer * outer;
         statue_feather *f = &model->feather[model->feather_count++];
         float half = r->half0 + (r->half1 - r->half0) * s;
         *f = (statue_feather){.u = at.x,
                               .v = at.y,
                               .along_u = along.x,
                               .along_v = along.y,
-                              .length = r->length0 + (r->length1 - r->length0) * s,
+                              .length = length,
                               .root = half * 0.8f,
                               .tip = half * r->pointed,
                               .bulge = half * 1.2f,
@@ -61,16 +64,16 @@ void statue_model_make(statue_model *model)
 {
     /* count, from, to, angles, lengths, half widths, height, setbacks, tilt, pointed */
     static const row rows[] = {
-        {9, 1.93f, 1.04f, 0.30f, 0.10f, 0.66f, 0.57f, 0.0215f, 0.0235f, 0.004f, 0.0f, 0.0f, -0.2f, 0.45f},
-        {8, 0.96f, 0.16f, 0.075f, -0.07f, 0.53f, 0.36f, 0.0235f, 0.022f, 0.004f, 0.0f, 0.0f, -0.2f, 0.8f},
-        {9, 1.95f, 1.02f, 0.29f, 0.12f, 0.33f, 0.30f, 0.0185f, 0.0205f, 0.0105f, 0.0f, 0.0f, -0.2f, 0.8f},
-        {8, 0.94f, 0.14f, 0.11f, -0.07f, 0.285f, 0.21f, 0.0205f, 0.020f, 0.0105f, 0.0f, 0.0f, -0.2f, 0.9f},
-        {10, 1.96f, 1.03f, 0.28f, 0.14f, 0.195f, 0.185f, 0.0155f, 0.017f, 0.0155f, 0.0f, 0.0f, -0.2f, 0.9f},
-        {9, 0.95f, 0.10f, 0.15f, -0.05f, 0.18f, 0.14f, 0.017f, 0.0175f, 0.016f, 0.0f, 0.0f, -0.2f, 0.95f},
-        {11, 1.97f, 1.03f, 0.28f, 0.16f, 0.115f, 0.115f, 0.012f, 0.014f, 0.0195f, -0.004f, -0.004f, -0.2f, 0.95f},
-        {11, 0.97f, 0.07f, 0.20f, 0.0f, 0.115f, 0.095f, 0.014f, 0.0145f, 0.0205f, -0.004f, 0.0f, -0.2f, 0.95f},
-        {13, 1.96f, 1.02f, 0.35f, 0.2f, 0.058f, 0.062f, 0.0095f, 0.0115f, 0.0225f, -0.012f, -0.012f, -0.2f, 1.0f},
-        {13, 0.98f, 0.05f, 0.28f, 0.05f, 0.062f, 0.055f, 0.0115f, 0.012f, 0.0245f, -0.012f, -0.008f, -0.2f, 1.0f},
+        {9, 1.95f, 1.04f, 0.46f, 0.13f, 0.66f, 0.62f, 0.0225f, 0.0265f, 0.004f, 0.0f, 0.0f, -0.16f, 0.45f},
+        {8, 0.96f, 0.16f, 0.10f, -0.07f, 0.585f, 0.38f, 0.0265f, 0.024f, 0.004f, 0.0f, 0.0f, -0.16f, 0.8f},
+        {9, 1.95f, 1.02f, 0.46f, 0.15f, 0.36f, 0.34f, 0.0195f, 0.0225f, 0.0105f, 0.0f, 0.0f, -0.18f, 0.75f},
+        {8, 0.94f, 0.14f, 0.13f, -0.07f, 0.325f, 0.22f, 0.0225f, 0.0215f, 0.0105f, 0.0f, 0.0f, -0.18f, 0.85f},
+        {10, 1.96f, 1.03f, 0.46f, 0.19f, 0.215f, 0.205f, 0.0165f, 0.0185f, 0.0155f, 0.0f, 0.0f, -0.18f, 0.9f},
+        {9, 0.95f, 0.10f, 0.17f, -0.05f, 0.20f, 0.15f, 0.0185f, 0.0185f, 0.016f, 0.0f, 0.0f, -0.18f, 0.95f},
+        {11, 1.97f, 1.03f, 0.48f, 0.24f, 0.125f, 0.125f, 0.013f, 0.0150f, 0.0195f, -0.004f, -0.004f, -0.18f, 0.95f},
+        {11, 0.97f, 0.07f, 0.22f, 0.0f, 0.125f, 0.10f, 0.015f, 0.0155f, 0.0205f, -0.004f, 0.0f, -0.18f, 0.95f},
+        {13, 1.96f, 1.02f, 0.55f, 0.3f, 0.062f, 0.066f, 0.0105f, 0.0125f, 0.0225f, -0.012f, -0.012f, -0.18f, 1.0f},
+        {13, 0.98f, 0.05f, 0.28f, 0.05f, 0.066f, 0.058f, 0.0125f, 0.013f, 0.0245f, -0.012f, -0.008f, -0.18f, 1.0f},
     };
     model->feather_count = 0;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)

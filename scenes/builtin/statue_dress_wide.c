@@ -86,7 +86,8 @@ f32x statue_dress(v3x p)
     f32x wander = 2.2f * f_sin(2.0f * angle + 5.0f * y) + 0.8f * f_sin(5.0f * angle + 9.0f * y);
     f32x over_pipes = pipes(12.0f * angle + wander + 1.0f, 0.10f);
     f32x over = body - (0.002f + 0.009f * drop + over_pipes * (0.003f + 0.011f * drop));
-    f32x edge = 0.47f + 0.035f * f_cos(angle * 2.0f + 0.6f) + 0.025f * f_sin(angle) - 0.03f * over_pipes;
+    f32x edge = 0.47f + 0.035f * f_cos(angle * 2.0f + 0.6f) + 0.025f * f_sin(angle) -
+                (0.022f + 0.012f * f_sin(3.0f * angle + 0.5f)) * over_pipes;
     over = sdf_smooth_intersect(over * 0.75f, sdf_smooth_intersect(y - 0.69f, (edge - y) * 0.5f, 0.004f), 0.003f);
     f32x d = sdf_smooth_union(f_min(gown, over), bodice(p), 0.006f);
     return f_max(f_min(d, foot(p)), -y);

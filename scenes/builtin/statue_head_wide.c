@@ -1,13 +1,13 @@
 /* The head, in units of half its height: chin at y = -1, crown at +1, face towards +z. */
 #include "scenes/builtin/statue.h"
 
-#define HEAD_UNIT 0.0635f
+#define HEAD_UNIT 0.0668f
 
 static sdf_frame head_frame(void)
 {
     v3 forward = v3_normalize((v3){-0.24f, -0.07f, 0.97f});
     v3 side = v3_normalize(v3_cross((v3){0.05f, 1.0f, 0.0f}, forward));
-    return (sdf_frame){{-0.004f, 0.930f, 0.014f}, side, v3_cross(forward, side), forward};
+    return (sdf_frame){{-0.004f, 0.933f, 0.014f}, side, v3_cross(forward, side), forward};
 }
 
 static v3x at(v3x q, float x, float y, float z) { return v3x_sub(q, v3x_splat((v3){x, y, z})); }

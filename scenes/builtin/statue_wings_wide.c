@@ -32,8 +32,8 @@ f32x statue_wings(const statue_model *model, v3x p)
     w = f_abs(w);
     /* The arm of the wing: shoulder, wrist, finger. */
     v3x q = {u, y, w};
-    sdf_curve inner = sdf_bezier(q, (v3){-0.01f, -0.03f, 0.0f}, (v3){0.02f, 0.15f, 0.0f}, (v3){0.14f, 0.215f, 0.0f});
-    sdf_curve outer = sdf_bezier(q, (v3){0.14f, 0.215f, 0.0f}, (v3){0.225f, 0.26f, 0.0f}, (v3){0.285f, 0.15f, 0.0f});
+    sdf_curve inner = sdf_bezier(q, (v3){-0.01f, -0.03f, 0.0f}, (v3){0.015f, 0.19f, 0.0f}, (v3){0.15f, 0.265f, 0.0f});
+    sdf_curve outer = sdf_bezier(q, (v3){0.15f, 0.265f, 0.0f}, (v3){0.245f, 0.32f, 0.0f}, (v3){0.315f, 0.215f, 0.0f});
     f32x d = inner.distance - (0.021f - 0.004f * inner.t);
     d = sdf_smooth_union(d, outer.distance - (0.017f - 0.009f * outer.t), 0.02f);
     for (int i = 0; i < model->feather_count; i++) {
