@@ -142,7 +142,7 @@ static bool run_draws(amb_pass *pass)
         const raster_draw *draw = &pass->draw[i];
         uint32_t stride = (2 + (uint32_t)draw->state.varying_floats + 3) & ~3u;
         uint64_t first = 0;
-        if (draw->state.vertex && draw->triangles == 0)
+        if ((draw->state.vertex && draw->triangles == 0) || draw->x0 >= draw->x1 || draw->y0 >= draw->y1)
             continue;
         do {
             uint64_t left = draw->triangles - first;
@@ -195,6 +195,9 @@ static void clear_job(void *user, int index, int thread)
         clear_image(pass, pass->target.color[i], x0, y0, &pass->target.clear_color[i].x);
     if (pass->target.depth)
         clear_image(pass, pass->target.depth, x0, y0, &pass->target.clear_depth);
+    const float stencil = (float)pass->target.clear_stencil;
+    if (pass->target.stencil)
+        clear_image(pass, pass->target.stencil, x0, y0, &stencil);
 }
 
 static void sum_stats(const amb_pass *pass, amb_pass_stats *sum)

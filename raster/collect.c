@@ -36,25 +36,57 @@ static inline uint32_t local_vertex(raster_scratch *scratch, uint32_t index, uin
     return local;
 }
 
-static void collect_indexed(const raster_chunk *chunk, raster_scratch *scratch)
+/* Positions, in the draw's list of corners, of primitive n; returns how many. */
+static inline int positions(amb_topology topology, uint32_t n, uint32_t position[3])
+{
+    switch (topology) {
+    case AMB_TRIANGLE_STRIP:
+        position[0] = n, position[1] = n + 1 + (n & 1), position[2] = n + 2 - (n & 1);
+        return 3;
+    case AMB_TRIANGLE_FAN:
+        position[0] = 0, position[1] = n + 1, position[2] = n + 2;
+        return 3;
+    case AMB_LINES:
+        position[0] = 2 * n, position[1] = 2 * n + 1;
+        return 2;
+    case AMB_LINE_STRIP:
+        position[0] = n, position[1] = n + 1;
+        return 2;
+    case AMB_POINTS:
+        position[0] = n;
+        return 1;
+    default:
+        position[0] = 3 * n, position[1] = 3 * n + 1, position[2] = 3 * n + 2;
+        return 3;
+    }
+}
+
+static inline void collect(const raster_chunk *chunk, raster_scratch *scratch, amb_topology topology, bool indexed)
 {
     const raster_draw *draw = chunk->draw;
-    const uint32_t limit = draw->state.vertex_count;
+    const uint32_t *indices = draw->state.indices;
+    const uint32_t limit = indexed ? draw->state.vertex_count : draw->state.count;
     uint32_t instance = (uint32_t)(chunk->first / draw->per_instance);
-    uint32_t triangle = (uint32_t)(chunk->first % draw->per_instance);
-    uint32_t corners = 0;
+    uint32_t primitive = (uint32_t)(chunk->first % draw->per_instance), corners = 0;
     forget(scratch);
     for (uint32_t i = 0; i < chunk->count; i++) {
-        const uint32_t *index = draw->state.indices + (size_t)triangle * 3;
-        if (index[0] < limit && index[1] < limit && index[2] < limit) {
-            for (int k = 0; k < 3; k++)
-                scratch->corner[k][corners] = local_vertex(scratch, index[k], instance);
+        uint32_t index[3];
+        int count = positions(topology, primitive, index);
+        bool valid = true;
+        for (int k = 0; k < count; k++) {
+            index[k] = indexed ? indices[index[k]] : index[k];
+            valid &= index[k] < limit;
+        }
+        if (valid) {
+            for (int k = 0; k < 3; k++) /* lines and points repeat their last corner */
+                scratch->corner[k][corners] =
+                    k < count ? local_vertex(scratch, index[k], instance) : scratch->corner[k - 1][corners];
             scratch->corner[3][corners++] = (uint32_t)chunk->first + i;
         } else {
             scratch->stats.triangles_culled++;
         }
-        if (++triangle == draw->per_instance) {
-            triangle = 0;
+        if (++primitive == draw->per_instance) {
+            primitive = 0;
             instance++;
             forget(scratch);
         }
@@ -62,33 +94,13 @@ static void collect_indexed(const raster_chunk *chunk, raster_scratch *scratch)
     scratch->corner_count = corners;
 }
 
-static void collect_running(const raster_chunk *chunk, raster_scratch *scratch)
-{
-    const raster_draw *draw = chunk->draw;
-    uint32_t instance = (uint32_t)(chunk->first / draw->per_instance);
-    uint32_t triangle = (uint32_t)(chunk->first % draw->per_instance);
-    for (uint32_t i = 0; i < chunk->count; i++) {
-        for (uint32_t k = 0; k < 3; k++) {
-            uint32_t local = scratch->unique_count++;
-            scratch->index[local] = (int32_t)(triangle * 3 + k);
-            scratch->instance[local] = (int32_t)instance;
-            scratch->corner[k][i] = local;
-        }
-        scratch->corner[3][i] = (uint32_t)chunk->first + i;
-        if (++triangle == draw->per_instance) {
-            triangle = 0;
-            instance++;
-        }
-    }
-    scratch->corner_count = chunk->count;
-}
-
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch)
 {
+    const amb_draw *draw = &chunk->draw->state;
     scratch->unique_count = 0;
-    if (chunk->draw->state.indices)
-        collect_indexed(chunk, scratch);
+    if (draw->topology == AMB_TRIANGLES && draw->indices) /* the hot one, with its constants known */
+        collect(chunk, scratch, AMB_TRIANGLES, true);
     else
-        collect_running(chunk, scratch);
+        collect(chunk, scratch, draw->topology, draw->indices != NULL);
     scratch->stats.vertices += scratch->unique_count;
 }

@@ -221,27 +221,4 @@ static inline void make_group(const raster_tile *tile, const raster_chunk *chunk
     g->small = m_bits(small);
 }
 
-/* Plays `count` triangles of the chunk; `index` is readable to AMB_LANES. */
-static inline void play_group(const raster_tile *tile, raster_shading *s, const raster_chunk *chunk,
-                              const int32_t *index, int count)
-{
-    edge_group g;
-    make_group(tile, chunk, index, &g);
-    for (int n = 0; n < count; n++) {
-        for (int i = 0; i < 3; i++)
-            s->number[i] = g.number[i][n];
-        s->primitive_front = g.primitive_front[n];
-        s->prepared = false;
-        if (!(g.small >> n & 1u)) {
-            play_large(tile, s, g.low[n], g.high[n]);
-            continue;
-        }
-        raster_edge e[3];
-        for (int i = 0; i < 3; i++)
-            e[i] = (raster_edge){g.c[i][n], g.a[i][n], g.b[i][n], g.bias[i][n]};
-        s->inverse_area = g.inverse_area[n];
-        cover_32(tile, s, e, box_in_tile(tile, g.low[n], g.high[n]));
-    }
-}
-
 #endif

@@ -1,21 +1,9 @@
-/* One block of AMB_LANES pixels: early depth, fragment shader, late depth, blending, masked store. Part of
- * tile_wide.c, which finds the covered blocks. */
+/* One block of AMB_LANES pixels: early tests, interpolation, the fragment shader, and what output.h does after it. Part
+ * of tile_wide.c, which finds the covered blocks. */
 #ifndef AMBIANCE_RASTER_FRAGMENT_H
 #define AMBIANCE_RASTER_FRAGMENT_H
 
-#include "raster/internal.h"
-
-/* A tile being played. Its pixels lie block by block; a block holds `planes` runs of AMB_LANES floats: depth first,
- * then every channel of every attachment. */
-typedef struct raster_tile {
-    const amb_pass *pass;
-    float *data;
-    int x0, y0;        /* pixels */
-    int blocks_x;      /* a row of the tile */
-    int right, bottom; /* pixels of the target inside the tile */
-    int thread;
-    amb_pass_stats *stats;
-} raster_tile;
+#include "raster/output.h"
 
 /* What shading needs of a triangle; rebuilt per tile, the same numbers in each, and only when a block is covered. */
 typedef struct raster_shading {
@@ -28,10 +16,39 @@ typedef struct raster_shading {
     const raster_vertex *vertex[3];
     float z0, dz1, dz2;
     float inverse_w[3]; /* scaled by a power of two so that the largest is in [1, 2) */
+    float bias;         /* of depth */
     bool affine;        /* all w equal: perspective-correct weights are the screen's */
     bool attributes;    /* base and delta are filled */
     float base[AMB_MAX_VARYINGS + 16], delta1[AMB_MAX_VARYINGS + 16], delta2[AMB_MAX_VARYINGS + 16];
 } raster_shading;
+
+/* D3D11's depth bias for floating-point depth. */
+static inline float depth_bias(const raster_shading *s)
+{
+    const amb_draw *draw = s->draw;
+    const raster_chunk *chunk = s->chunk;
+    const uint32_t *v = s->number;
+    float most = amb_s_max(amb_s_max(s->vertex[0]->z, s->vertex[1]->z), s->vertex[2]->z), unit, slope = 0.0f;
+    uint32_t bits;
+    memcpy(&bits, &most, sizeof bits);
+    uint32_t exponent = bits >> 23 & 255u;
+    bits = exponent > 23 ? (exponent - 23u) << 23 : 0; /* 2^(e - 23) */
+    memcpy(&unit, &bits, sizeof unit);
+    if (draw->topology <= AMB_TRIANGLE_FAN && !draw->wireframe) {
+        /* Edge functions 1 and 2 change by a per pixel to the right and b per pixel down. */
+        float a1 = (float)(chunk->y[v[2]] - chunk->y[v[0]]), b1 = (float)(chunk->x[v[0]] - chunk->x[v[2]]);
+        float a2 = (float)(chunk->y[v[0]] - chunk->y[v[1]]), b2 = (float)(chunk->x[v[1]] - chunk->x[v[0]]);
+        float dx = (s->dz1 * a1 + s->dz2 * a2) * s->inverse_area, dy = (s->dz1 * b1 + s->dz2 * b2) * s->inverse_area;
+        dx = dx < 0.0f ? -dx : dx, dy = dy < 0.0f ? -dy : dy;
+        slope = amb_s_max(dx, dy);
+    }
+    float bias = draw->depth_bias * unit + draw->depth_bias_slope * slope;
+    if (draw->depth_bias_clamp > 0.0f)
+        bias = amb_s_min(bias, draw->depth_bias_clamp);
+    if (draw->depth_bias_clamp < 0.0f)
+        bias = amb_s_max(bias, draw->depth_bias_clamp);
+    return bias;
+}
 
 static inline void prepare_shading(raster_shading *s)
 {
@@ -49,115 +66,58 @@ static inline void prepare_shading(raster_shading *s)
     bits = (254u << 23) - (bits & 0x7f800000u); /* 1/w is below 2¹²⁷: a normal number remains */
     memcpy(&scale, &bits, sizeof scale);
     s->inverse_w[0] = w0 * scale, s->inverse_w[1] = w1 * scale, s->inverse_w[2] = w2 * scale;
+    s->bias = 0.0f;
+    if (s->draw->depth_bias != 0.0f || s->draw->depth_bias_slope != 0.0f)
+        s->bias = depth_bias(s);
     s->attributes = false;
     s->prepared = true;
 }
 
-static inline maskx depth_passes(amb_compare compare, f32x z, f32x stored)
+/* Tests must wait for the shader when it makes the depth, and when a failed test would change the stencil of a fragment
+ * that the shader may still discard. */
+static inline bool tests_late(const amb_draw *draw)
 {
-    switch (compare) {
-    case AMB_LESS:
-        return z < stored;
-    case AMB_EQUAL:
-        return z == stored;
-    case AMB_LESS_EQUAL:
-        return z <= stored;
-    case AMB_GREATER:
-        return z > stored;
-    case AMB_NOT_EQUAL:
-        return z != stored;
-    case AMB_GREATER_EQUAL:
-        return z >= stored;
-    case AMB_ALWAYS:
-        return m_set(true);
-    default:
-        return m_set(false); /* NEVER */
-    }
+    const amb_stencil *s = &draw->stencil;
+    return draw->writes_depth ||
+           (s->on && (s->front.fail | s->front.depth_fail | s->back.fail | s->back.depth_fail) != AMB_STENCIL_KEEP);
 }
 
-static inline float *block_at(const raster_tile *tile, int bx, int by)
-{
-    return tile->data + (size_t)(by * tile->blocks_x + bx) * (size_t)tile->pass->planes * AMB_LANES;
-}
-
-/* Lanes inside the target. */
-static inline maskx inside_target(const raster_tile *tile, int bx, int by)
-{
-    if ((bx + 1) * AMB_BLOCK_W <= tile->right && (by + 1) * AMB_BLOCK_H <= tile->bottom)
-        return m_set(true);
-    return (i_set(bx * AMB_BLOCK_W) + i_block_x() < tile->right) &
-           (i_set(by * AMB_BLOCK_H) + i_block_y() < tile->bottom);
-}
-
-static inline void store_plane(float *plane, f32x value, maskx live, bool all)
-{
-    f_store(plane, all ? value : f_sel(live, value, f_load(plane)));
-}
-
-/* One attachment of one block. */
-static inline void store_target(float *plane, int channels, amb_blend mode, const f32x source[4], maskx live, bool all)
-{
-    f32x rest = 1.0f - source[3];
-    switch (mode) {
-    case AMB_BLEND_ALPHA:
-        for (int c = 0; c < channels; c++) {
-            float *p = plane + c * AMB_LANES;
-            store_plane(p, (c == 3 ? source[3] : source[c] * source[3]) + f_load(p) * rest, live, all);
-        }
-        break;
-    case AMB_BLEND_ADD:
-        for (int c = 0; c < channels; c++)
-            store_plane(plane + c * AMB_LANES, source[c] + f_load(plane + c * AMB_LANES), live, all);
-        break;
-    case AMB_BLEND_MULTIPLY:
-        for (int c = 0; c < channels; c++)
-            store_plane(plane + c * AMB_LANES, source[c] * f_load(plane + c * AMB_LANES), live, all);
-        break;
-    default:
-        for (int c = 0; c < channels; c++)
-            store_plane(plane + c * AMB_LANES, source[c], live, all);
-    }
-}
-
-static inline void store_colors(const raster_tile *tile, const amb_draw *draw, float *block, const amb_fs_out *out,
-                                maskx live)
-{
-    const amb_pass *pass = tile->pass;
-    bool all = m_all(live);
-    for (int i = 0; i < pass->target_count; i++) {
-        if (draw->targets_off >> i & 1u)
-            continue;
-        const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
-        float *plane = block + (size_t)pass->channel_first[i] * AMB_LANES;
-        int channels = pass->target.color[i]->channels;
-        if (channels == 4) /* the usual case, unrolled */
-            store_target(plane, 4, draw->blend[i], source, live, all);
-        else
-            store_target(plane, channels, draw->blend[i], source, live, all);
-    }
-}
-
-/* Runs the fragment shader and everything after it. `live` has passed the early test unless the shader writes depth. */
-static inline void shade_block(const raster_tile *tile, const amb_draw *draw, float *block, amb_fs_in *in, f32x depth)
+/* Runs the fragment shader and everything after it on the lanes of in->live. */
+static inline void shade_block(const raster_tile *tile, const amb_draw *draw, float *block, amb_fs_in *in, f32x depth,
+                               bool front, bool late)
 {
     amb_fs_out out;
     out.depth = depth;
     out.live = in->live;
     for (int i = 0; i < tile->pass->target_count; i++)
         out.color[i] = (v4x){0};
+    if (tile->pass->target_count < 2)
+        out.color[1] = (v4x){0}; /* may be a second source of blending */
     draw->fragment(in, &out);
     maskx live = in->live & out.live;
-    if (draw->writes_depth) {
+    if (draw->writes_depth)
         depth = f_saturate(out.depth);
-        live &= depth_passes(draw->depth_compare, depth, f_load(block));
-    }
     tile->stats->blocks_shaded++;
     tile->stats->fragments_shaded += (uint64_t)__builtin_popcount(m_bits(in->live));
-    if (!m_any(live))
-        return;
-    if (!draw->depth_write_off)
-        store_plane(block, depth, live, false);
-    store_colors(tile, draw, block, &out, live);
+    if (late || draw->stencil.on)
+        live = update_depth_stencil(tile, draw, block, front, depth, live);
+    else if (!draw->depth_write_off)
+        f_store(block, f_sel(live, depth, f_load(block)));
+    if (m_any(live))
+        store_colors(tile, draw, block, &out, live);
+}
+
+/* Gives the covered lanes of a block, minus those that fail an early test. */
+static inline maskx live_lanes(const raster_tile *tile, const amb_draw *draw, float *block, int bx, int by, maskx cover,
+                               f32x depth, bool front, bool late)
+{
+    maskx live = cover & inside_clip(tile, bx, by);
+    if (!draw->fragment) {
+        if (m_any(live))
+            update_depth_stencil(tile, draw, block, front, depth, live);
+        return m_set(false);
+    }
+    return late ? live : live & output_tests(tile, draw, block, front, depth);
 }
 
 static inline void block_position(const raster_tile *tile, int bx, int by, amb_fs_in *in)
@@ -190,20 +150,14 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     if (!s->prepared)
         prepare_shading(s);
     f32x l1 = e[1] * s->inverse_area, l2 = e[2] * s->inverse_area;
-    f32x depth = f_saturate((s->z0 + s->dz1 * l1) + s->dz2 * l2);
-    maskx live = cover & inside_target(tile, bx, by);
-    if (!draw->writes_depth)
-        live &= depth_passes(draw->depth_compare, depth, f_load(block));
+    f32x depth = f_saturate(((s->z0 + s->dz1 * l1) + s->dz2 * l2) + s->bias);
+    const bool front = s->primitive_front >> 31 != 0, late = tests_late(draw);
+    maskx live = live_lanes(tile, draw, block, bx, by, cover, depth, front, late);
     if (!m_any(live))
         return;
-    if (!draw->fragment) {
-        if (!draw->depth_write_off)
-            f_store(block, f_sel(live, depth, f_load(block)));
-        return;
-    }
     f32x varying[AMB_MAX_VARYINGS + 1];
     amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = depth, .live = live};
-    in.front = m_set(s->primitive_front >> 31 != 0);
+    in.front = m_set(front);
     in.primitive = (int)(s->primitive_front & 0x7fffffffu);
     in.thread = tile->thread;
     block_position(tile, bx, by, &in);
@@ -220,7 +174,7 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
         for (int i = 0; i < floats; i++)
             varying[i] = (s->base[i] + s->delta1[i] * b1) + s->delta2[i] * b2;
     }
-    shade_block(tile, draw, block, &in, depth);
+    shade_block(tile, draw, block, &in, depth, front, late);
 }
 
 /* A block of a full-screen draw. */
@@ -228,16 +182,15 @@ static inline void fragment_screen(const raster_tile *tile, const amb_draw *draw
 {
     float *block = block_at(tile, bx, by);
     f32x depth = f_set(1.0f);
-    maskx live = inside_target(tile, bx, by);
-    if (!draw->writes_depth)
-        live &= depth_passes(draw->depth_compare, depth, f_load(block));
+    const bool late = tests_late(draw);
+    maskx live = live_lanes(tile, draw, block, bx, by, m_set(true), depth, true, late);
     if (!m_any(live))
         return;
     amb_fs_in in = {.uniforms = draw->uniforms, .depth = depth, .live = live};
     in.front = m_set(true);
     in.thread = tile->thread;
     block_position(tile, bx, by, &in);
-    shade_block(tile, draw, block, &in, depth);
+    shade_block(tile, draw, block, &in, depth, true, late);
 }
 
 #endif

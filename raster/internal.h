@@ -22,7 +22,8 @@
 #define RASTER_LARGE_TILES 16 /* triangles on more tiles than this are not binned but offered to every tile */
 #define RASTER_MAX_TILE 128   /* pixels, tile edge */
 #define RASTER_BATCH_CHUNKS 2048
-#define RASTER_BATCH_BYTES ((size_t)128 << 20)
+#define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
+#define RASTER_MAX_POINT 4096.0f
 #define RASTER_TILE 64
 
 /* Clip codes of a vertex. */
@@ -39,8 +40,10 @@ enum {
 typedef struct raster_draw {
     amb_draw state;
     void *uniforms;        /* owned copy; NULL when there are none */
-    uint32_t per_instance; /* triangles */
-    uint64_t triangles;    /* of all instances; 0 for full-screen draws */
+    uint32_t per_instance; /* primitives */
+    uint64_t triangles;    /* primitives of all instances; 0 for full-screen draws */
+    int x0, y0, x1, y1;    /* scissor inside the target, ends exclusive */
+    bool lines, points;    /* what triangle-like records hold: wireframe draws are lines too */
 } raster_draw;
 
 /* A vertex after the vertex stage, without its window position; the varyings follow, and padding to a multiple of four
@@ -103,6 +106,7 @@ struct amb_pass {
     int width, height;
     int target_count;
     int channel_first[AMB_MAX_TARGETS]; /* plane of an attachment's first channel; plane 0 is depth */
+    int stencil_plane;                  /* 0: none */
     int planes;
     int tile_size, tiles_x, tiles_y;
     size_t batch_bytes;
@@ -128,18 +132,28 @@ bool raster_reserve_triangles(raster_chunk *chunk, size_t count);
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch);
 /* One triangle the lanes leave alone: clipped, or too large for 32-bit areas. Sets scratch->failed. */
 void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, uint32_t corner);
+/* Wireframe triangles, lines and points. */
+void raster_setup_lines(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
+/* Appends a vertex made by clipping: a clip position and the weights of corners 1 and 2. False when it lands nowhere.
+ * The array has room. */
+bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_t corner[3], const double clip[4],
+                        const double weight[2], uint32_t *number);
 void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
+
+typedef struct raster_polygon_vertex {
+    double clip[4];   /* x, y, z, w */
+    double weight[2]; /* of the triangle's corners 1 and 2 */
+    int corner;       /* 0…2: an original corner, -1: a new vertex */
+} raster_polygon_vertex;
 
 typedef struct raster_polygon {
     int count;
-    struct {
-        double clip[4];   /* x, y, z, w */
-        double weight[2]; /* of the triangle's corners 1 and 2 */
-        int corner;       /* 0…2: an original corner, -1: a new vertex */
-    } vertex[RASTER_POLYGON];
+    raster_polygon_vertex vertex[RASTER_POLYGON];
 } raster_polygon;
 /* Cuts the polygon with the planes named in `codes`, in the order of their bits. */
 void raster_clip(raster_polygon *polygon, unsigned codes, double guard_x, double guard_y);
+/* The same for the segment from vertex 0 to vertex 1; false when nothing is left. */
+bool raster_clip_line(raster_polygon *line, unsigned codes, double guard_x, double guard_y);
 
 /* The tests' knobs; pixels depend on neither. tile_size: 16, 32, 64 or 128 pixels; batch_bytes: what a batch may hold
  * before its tiles are played (0: at least one chunk). */

@@ -1,6 +1,7 @@
 /* A pass: the checked record of a target and its draws. Running it is batch.c's part. */
 #include "raster/internal.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #define MAX_TRIANGLES ((uint64_t)INT32_MAX) /* of one draw: their running numbers are ints */
@@ -36,18 +37,32 @@ static amb_status check_image(const amb_pass *pass, const amb_image *image, cons
     return AMB_OK;
 }
 
+/* A depth or stencil image. */
+static amb_status check_plain(const amb_pass *pass, const amb_image *image, const char *name, amb_error *error)
+{
+    amb_status status = check_image(pass, image, name, 0, error);
+    if (status == AMB_OK && image->channels != 1)
+        status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: the %s image has %d channels; it must have 1", name,
+                          image->channels);
+    for (int k = 0; k < pass->target_count && status == AMB_OK; k++)
+        if (pass->target.color[k] == image)
+            status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: colour image %d is also the %s image", k, name);
+    return status;
+}
+
 /* Counts the attachments and lays out a tile's planes. */
 static amb_status check_target(amb_pass *pass, amb_error *error)
 {
     const amb_target *t = &pass->target;
-    const amb_image *first = t->color[0] ? t->color[0] : t->depth;
+    const amb_image *first = t->color[0] ? t->color[0] : t->depth ? t->depth : t->stencil;
     if (!first)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: neither colour nor depth image is given");
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: neither colour, depth nor stencil image is given");
     pass->width = first->width, pass->height = first->height;
     if (pass->width < 1 || pass->height < 1 || pass->width > AMB_MAX_IMAGE_SIZE || pass->height > AMB_MAX_IMAGE_SIZE)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: size %d×%d is outside 1…%d", pass->width, pass->height,
                         AMB_MAX_IMAGE_SIZE);
-    pass->planes = 1;
+    pass->stencil_plane = t->stencil ? 1 : 0;
+    pass->planes = 1 + pass->stencil_plane;
     for (; pass->target_count < AMB_MAX_TARGETS && t->color[pass->target_count]; pass->target_count++) {
         int i = pass->target_count;
         amb_status status = check_image(pass, t->color[i], "colour image", i, error);
@@ -59,15 +74,11 @@ static amb_status check_target(amb_pass *pass, amb_error *error)
         pass->channel_first[i] = pass->planes;
         pass->planes += t->color[i]->channels;
     }
-    if (!t->depth)
-        return AMB_OK;
-    amb_status status = check_image(pass, t->depth, "depth image", 0, error);
-    if (status == AMB_OK && t->depth->channels != 1)
-        status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: the depth image has %d channels; it must have 1",
-                          t->depth->channels);
-    for (int k = 0; k < pass->target_count && status == AMB_OK; k++)
-        if (t->color[k] == t->depth)
-            status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: colour image %d is also the depth image", k);
+    amb_status status = t->depth ? check_plain(pass, t->depth, "depth", error) : AMB_OK;
+    if (status == AMB_OK && t->stencil)
+        status = check_plain(pass, t->stencil, "stencil", error);
+    if (status == AMB_OK && t->depth && t->depth == t->stencil)
+        status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: the depth image is also the stencil image");
     return status;
 }
 
@@ -116,11 +127,82 @@ error:
 
 amb_status amb_pass_begin(const amb_context *context, const amb_target *target, amb_pass **out, amb_error *error)
 {
-    return raster_pass_begin(context, target, RASTER_TILE, RASTER_BATCH_BYTES, out, error);
+    size_t bytes = context ? RASTER_BATCH_BYTES / 2 * (size_t)amb_context_threads(context) : 0;
+    return raster_pass_begin(context, target, RASTER_TILE, bytes > RASTER_BATCH_BYTES ? bytes : RASTER_BATCH_BYTES, out,
+                             error);
 }
 
 /* "draw 'label': " for messages. */
 static const char *label_of(const amb_draw *draw) { return draw->label ? draw->label : "unnamed"; }
+
+/* An enumerator out of 0…last. */
+static amb_status check_choice(const amb_draw *d, const char *field, int value, int last, amb_error *error)
+{
+    if (value >= 0 && value <= last)
+        return AMB_OK;
+    return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': %s is %d; 0 to %d are allowed", label_of(d), field, value,
+                    last);
+}
+
+static amb_status check_equation(const amb_pass *pass, const amb_draw *d, int target, amb_error *error)
+{
+    const amb_blend_equation *q = &d->equation[target];
+    const int factor[4] = {(int)q->color_source, (int)q->color_target, (int)q->alpha_source, (int)q->alpha_target};
+    const int op[2] = {(int)q->color_op, (int)q->alpha_op};
+    amb_status status = AMB_OK;
+    for (int i = 0; i < 4 && status == AMB_OK; i++) {
+        status = check_choice(d, "a blend factor", factor[i], AMB_FACTOR_ONE_MINUS_SECOND_ALPHA, error);
+        if (status == AMB_OK && factor[i] >= AMB_FACTOR_SECOND && pass->target_count != 1)
+            status = amb_fail(error, AMB_ERROR_ARGUMENT,
+                              "draw '%s': blending with a second colour needs one colour image; the target has %d",
+                              label_of(d), pass->target_count);
+    }
+    for (int i = 0; i < 2 && status == AMB_OK; i++)
+        status = check_choice(d, "a blend operation", op[i], AMB_BLEND_MAX, error);
+    return status;
+}
+
+static amb_status check_stencil(const amb_pass *pass, const amb_draw *d, amb_error *error)
+{
+    if (!d->stencil.on)
+        return AMB_OK;
+    if (!pass->target.stencil)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': stencil is on, but the target has no stencil image",
+                        label_of(d));
+    const amb_stencil_face *face[2] = {&d->stencil.front, &d->stencil.back};
+    amb_status status = AMB_OK;
+    for (int i = 0; i < 2 && status == AMB_OK; i++) {
+        const int op[3] = {(int)face[i]->fail, (int)face[i]->depth_fail, (int)face[i]->pass};
+        status = check_choice(d, "a stencil compare", (int)face[i]->compare, AMB_ALWAYS, error);
+        for (int k = 0; k < 3 && status == AMB_OK; k++)
+            status = check_choice(d, "a stencil operation", op[k], AMB_STENCIL_DECREMENT_WRAP, error);
+    }
+    return status;
+}
+
+static amb_status check_output(const amb_pass *pass, const amb_draw *d, amb_error *error)
+{
+    amb_status status = check_choice(d, "cull", (int)d->cull, AMB_CULL_FRONT, error);
+    if (status == AMB_OK)
+        status = check_choice(d, "depth_compare", (int)d->depth_compare, AMB_ALWAYS, error);
+    for (int i = 0; i < pass->target_count && status == AMB_OK; i++) {
+        char field[16];
+        snprintf(field, sizeof field, "blend[%d]", i);
+        status = check_choice(d, field, (int)d->blend[i], AMB_BLEND_EQUATION, error);
+        if (status == AMB_OK && d->blend[i] == AMB_BLEND_EQUATION)
+            status = check_equation(pass, d, i, error);
+    }
+    if (status == AMB_OK)
+        status = check_stencil(pass, d, error);
+    const amb_rect *r = &d->scissor;
+    if (status == AMB_OK && (r->width < 0 || r->height < 0))
+        status = amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': the scissor is %d×%d; it cannot be negative",
+                          label_of(d), r->width, r->height);
+    if (status == AMB_OK &&
+        !(f_is_finite(d->depth_bias) && f_is_finite(d->depth_bias_slope) && f_is_finite(d->depth_bias_clamp)))
+        status = amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': a depth bias is not finite", label_of(d));
+    return status;
+}
 
 static amb_status check_state(const amb_pass *pass, const amb_draw *d, amb_error *error)
 {
@@ -139,17 +221,25 @@ static amb_status check_state(const amb_pass *pass, const amb_draw *d, amb_error
     if (d->varying_floats < 0 || d->varying_floats > AMB_MAX_VARYINGS)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': varying_floats is %d; 0 to %d are allowed", label,
                         d->varying_floats, AMB_MAX_VARYINGS);
-    if ((unsigned)d->cull > AMB_CULL_FRONT)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': cull is %d; 0 to %d are allowed", label, (int)d->cull,
-                        AMB_CULL_FRONT);
-    if ((unsigned)d->depth_compare > AMB_ALWAYS)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': depth_compare is %d; 0 to %d are allowed", label,
-                        (int)d->depth_compare, AMB_ALWAYS);
-    for (int i = 0; i < pass->target_count; i++)
-        if ((unsigned)d->blend[i] > AMB_BLEND_MULTIPLY)
-            return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': blend[%d] is %d; 0 to %d are allowed", label, i,
-                            (int)d->blend[i], AMB_BLEND_MULTIPLY);
-    return AMB_OK;
+    return check_output(pass, d, error);
+}
+
+/* Of one instance. */
+static uint32_t primitives_of(const amb_draw *d)
+{
+    switch (d->topology) {
+    case AMB_TRIANGLE_STRIP:
+    case AMB_TRIANGLE_FAN:
+        return d->count < 3 ? 0 : d->count - 2;
+    case AMB_LINES:
+        return d->count / 2;
+    case AMB_LINE_STRIP:
+        return d->count < 2 ? 0 : d->count - 1;
+    case AMB_POINTS:
+        return d->count;
+    default:
+        return d->count / 3;
+    }
 }
 
 static amb_status check_geometry(const amb_draw *d, amb_error *error)
@@ -167,11 +257,29 @@ static amb_status check_geometry(const amb_draw *d, amb_error *error)
                         INT32_MAX);
     if (!d->indices && d->count > (uint32_t)INT32_MAX)
         return amb_fail(error, AMB_ERROR_LIMIT, "draw '%s': count %u is above %d", label, d->count, INT32_MAX);
-    uint64_t triangles = (uint64_t)(d->count / 3) * (d->instances ? d->instances : 1);
-    if (triangles > MAX_TRIANGLES || d->instances > (uint32_t)INT32_MAX)
-        return amb_fail(error, AMB_ERROR_LIMIT, "draw '%s': %u vertices × %u instances are more than %d triangles",
+    amb_status status = check_choice(d, "topology", (int)d->topology, AMB_POINTS, error);
+    if (status != AMB_OK)
+        return status;
+    if (!(d->point_size >= 0.0f && d->point_size <= RASTER_MAX_POINT))
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': point_size is %g; 0 to %g are allowed", label,
+                        (double)d->point_size, (double)RASTER_MAX_POINT);
+    uint64_t primitives = (uint64_t)primitives_of(d) * (d->instances ? d->instances : 1);
+    if (primitives > MAX_TRIANGLES || d->instances > (uint32_t)INT32_MAX)
+        return amb_fail(error, AMB_ERROR_LIMIT, "draw '%s': %u vertices × %u instances are more than %d primitives",
                         label, d->count, d->instances, INT32_MAX);
     return AMB_OK;
+}
+
+static int clamp_to(int64_t a, int last) { return a < 0 ? 0 : a > last ? last : (int)a; }
+
+static void set_scissor(const amb_pass *pass, raster_draw *draw)
+{
+    const amb_rect *r = &draw->state.scissor;
+    bool whole = r->width == 0 && r->height == 0;
+    draw->x0 = whole ? 0 : clamp_to(r->x, pass->width);
+    draw->y0 = whole ? 0 : clamp_to(r->y, pass->height);
+    draw->x1 = whole ? pass->width : clamp_to((int64_t)r->x + r->width, pass->width);
+    draw->y1 = whole ? pass->height : clamp_to((int64_t)r->y + r->height, pass->height);
 }
 
 amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
@@ -194,8 +302,11 @@ amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
                             label_of(draw), draw->uniforms_size);
         memcpy(record.uniforms, draw->uniforms, draw->uniforms_size);
     }
+    set_scissor(pass, &record);
     if (draw->vertex) {
-        record.per_instance = draw->count / 3;
+        record.per_instance = primitives_of(draw);
+        record.points = draw->topology == AMB_POINTS;
+        record.lines = !record.points && (draw->topology >= AMB_LINES || draw->wireframe);
         record.triangles = (uint64_t)record.per_instance * (draw->instances ? draw->instances : 1);
     }
     record.state.uniforms = record.uniforms;

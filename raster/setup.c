@@ -2,6 +2,8 @@
  * 32-bit areas. Same rules, one at a time. */
 #include "raster/internal.h"
 
+static int32_t min2(int32_t a, int32_t b) { return a < b ? a : b; }
+static int32_t max2(int32_t a, int32_t b) { return a > b ? a : b; }
 static int32_t min3(int32_t a, int32_t b, int32_t c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
 static int32_t max3(int32_t a, int32_t b, int32_t c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
 
@@ -10,8 +12,7 @@ static int32_t first_pixel(int32_t lo) { return (lo + 127) >> 8; }
 static int32_t last_pixel(int32_t hi) { return (hi - 128) >> 8; }
 
 /* Culls and bounds the window triangle and appends what remains. The array has room. */
-static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, const uint32_t v[3],
-                         uint32_t primitive)
+static void add_triangle(raster_chunk *chunk, raster_scratch *scratch, const uint32_t v[3], uint32_t primitive)
 {
     const amb_draw *draw = &chunk->draw->state;
     const int32_t *x = chunk->x, *y = chunk->y;
@@ -20,8 +21,8 @@ static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scrat
     bool front = (area > 0) == draw->front_clockwise; /* y points down: positive is clockwise on the screen */
     int32_t x0 = first_pixel(min3(x[a], x[b], x[c])), x1 = last_pixel(max3(x[a], x[b], x[c]));
     int32_t y0 = first_pixel(min3(y[a], y[b], y[c])), y1 = last_pixel(max3(y[a], y[b], y[c]));
-    x0 = x0 > 0 ? x0 : 0, y0 = y0 > 0 ? y0 : 0;
-    x1 = x1 < pass->width - 1 ? x1 : pass->width - 1, y1 = y1 < pass->height - 1 ? y1 : pass->height - 1;
+    const raster_draw *limits = chunk->draw;
+    x0 = max2(x0, limits->x0), x1 = min2(x1, limits->x1 - 1), y0 = max2(y0, limits->y0), y1 = min2(y1, limits->y1 - 1);
     if (area == 0 || x0 > x1 || y0 > y1 || (draw->cull == AMB_CULL_BACK && !front) ||
         (draw->cull == AMB_CULL_FRONT && front)) {
         scratch->stats.triangles_culled++;
@@ -45,8 +46,7 @@ static int32_t snap(float ndc, float scale, float offset)
     return (int32_t)f_round((ndc * scale + offset) * (float)RASTER_SUBPIXEL);
 }
 
-/* Appends a vertex made by clipping; false when it lands nowhere. The array has room. */
-static bool make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_t corner[3], const double clip[4],
+bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_t corner[3], const double clip[4],
                         const double weight[2], uint32_t *number)
 {
     float x = (float)clip[0], y = (float)clip[1], z = (float)clip[2], w = (float)clip[3];
@@ -91,13 +91,14 @@ static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scra
     for (int i = 0; i < polygon.count; i++) {
         if (polygon.vertex[i].corner >= 0)
             number[i] = corner[polygon.vertex[i].corner];
-        else if (!make_vertex(pass, chunk, corner, polygon.vertex[i].clip, polygon.vertex[i].weight, &number[i])) {
+        else if (!raster_make_vertex(pass, chunk, corner, polygon.vertex[i].clip, polygon.vertex[i].weight,
+                                     &number[i])) {
             scratch->stats.triangles_culled++;
             return true;
         }
     }
     for (int i = 2; i < polygon.count; i++)
-        add_triangle(pass, chunk, scratch, (uint32_t[3]){number[0], number[i - 1], number[i]}, corner[3]);
+        add_triangle(chunk, scratch, (uint32_t[3]){number[0], number[i - 1], number[i]}, corner[3]);
     return true;
 }
 
@@ -113,7 +114,7 @@ void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch 
     else if (any != 0)
         scratch->failed |= !clip_triangle(pass, chunk, scratch, corner, any);
     else if (raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + 1))
-        add_triangle(pass, chunk, scratch, corner, corner[3]);
+        add_triangle(chunk, scratch, corner, corner[3]);
     else
         scratch->failed = true;
 }

@@ -11,8 +11,11 @@ typedef struct corners {
     i32x number[3], x[3], y[3];
 } corners;
 
-/* First and last pixel whose centre lies in [low, high] (1/256 pixel), inside 0…last. */
-static i32x first_pixel(const i32x a[3]) { return i_max((i_min(i_min(a[0], a[1]), a[2]) + 127) >> 8, i_set(0)); }
+/* First and last pixel whose centre lies in [low, high] (1/256 pixel), inside first…last. */
+static i32x first_pixel(const i32x a[3], int first)
+{
+    return i_max((i_min(i_min(a[0], a[1]), a[2]) + 127) >> 8, i_set(first));
+}
 static i32x last_pixel(const i32x a[3], int last)
 {
     return i_min((i_max(i_max(a[0], a[1]), a[2]) - 128) >> 8, i_set(last));
@@ -58,7 +61,8 @@ static void append(raster_triangles *t, uint32_t kept, const uint32_t *const wor
 static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, uint32_t first,
                         uint32_t live)
 {
-    const amb_draw *draw = &chunk->draw->state;
+    const raster_draw *limits = chunk->draw;
+    const amb_draw *draw = &limits->state;
     corners c;
     i32x code = i_set(0);
     for (int i = 0; i < 3; i++) {
@@ -72,8 +76,8 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
     i32x area = (c.x[1] - c.x[0]) * (c.y[2] - c.y[0]) - (c.x[2] - c.x[0]) * (c.y[1] - c.y[0]);
     maskx clockwise = area > 0; /* y points down */
     maskx front = draw->front_clockwise ? clockwise : ~clockwise;
-    i32x x0 = first_pixel(c.x), x1 = last_pixel(c.x, pass->width - 1);
-    i32x y0 = first_pixel(c.y), y1 = last_pixel(c.y, pass->height - 1);
+    i32x x0 = first_pixel(c.x, limits->x0), x1 = last_pixel(c.x, limits->x1 - 1);
+    i32x y0 = first_pixel(c.y, limits->y0), y1 = last_pixel(c.y, limits->y1 - 1);
     maskx kept = simple & (area != 0) & (x0 <= x1) & (y0 <= y1);
     if (draw->cull != AMB_CULL_NONE)
         kept &= draw->cull == AMB_CULL_BACK ? front : ~front;
@@ -112,6 +116,10 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
 void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
 {
     const uint32_t count = scratch->corner_count;
+    if (chunk->draw->lines || chunk->draw->points) {
+        raster_setup_lines(pass, chunk, scratch);
+        return;
+    }
     for (uint32_t i = count; i < count + AMB_LANES - 1 && count > 0; i++) /* lanes past the end must be readable */
         for (int k = 0; k < 4; k++)
             scratch->corner[k][i] = scratch->corner[k][count - 1];

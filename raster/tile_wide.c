@@ -1,5 +1,5 @@
 /* The tile stage: all chunks of a batch, in order, over one tile, from loading its pixels to storing them. */
-#include "raster/coverage.h"
+#include "raster/lines.h"
 
 #define raster_tile_play WIDE(raster_tile)
 void raster_tile_play(const amb_pass *pass, int tile, raster_scratch *scratch, int thread);
@@ -59,6 +59,11 @@ static void load_tile(const raster_tile *tile, bool from_images)
                 transfer(tile, target->color[i], c, tile->pass->channel_first[i] + c, false);
         }
     }
+    if (target->stencil) {
+        fill(tile, tile->pass->stencil_plane, from_images ? 0.0f : (float)target->clear_stencil);
+        if (from_images)
+            transfer(tile, target->stencil, 0, tile->pass->stencil_plane, false);
+    }
     fill(tile, 0, from_images || !target->depth ? 0.0f : target->clear_depth);
     if (target->depth && from_images)
         transfer(tile, target->depth, 0, 0, false);
@@ -70,29 +75,79 @@ static void store_tile(const raster_tile *tile)
     for (int i = 0; i < tile->pass->target_count; i++)
         for (int c = 0; c < target->color[i]->channels; c++)
             transfer(tile, target->color[i], c, tile->pass->channel_first[i] + c, true);
+    if (target->stencil)
+        transfer(tile, target->stencil, 0, tile->pass->stencil_plane, true);
     if (target->depth)
         transfer(tile, target->depth, 0, 0, true);
 }
 
 /* ---- playing ---------------------------------------------------------------------------------------------------- */
 
+static int clamp_to_tile(int pixel, int side) { return pixel < 0 ? 0 : pixel > side ? side : pixel; }
+
+/* The draw's scissor in this tile; false when it misses it. */
+static bool set_clip(raster_tile *tile, const raster_draw *draw)
+{
+    int side = tile->pass->tile_size;
+    tile->clip_x0 = clamp_to_tile(draw->x0 - tile->x0, side), tile->clip_x1 = clamp_to_tile(draw->x1 - tile->x0, side);
+    tile->clip_y0 = clamp_to_tile(draw->y0 - tile->y0, side), tile->clip_y1 = clamp_to_tile(draw->y1 - tile->y0, side);
+    return tile->clip_x0 < tile->clip_x1 && tile->clip_y0 < tile->clip_y1;
+}
+
 /* Consecutive full-screen draws, row of blocks by row of blocks, so that a row stays in the nearest cache. */
-static void play_screens(const raster_tile *tile, const raster_chunk *chunk, size_t count)
+static void play_screens(raster_tile *tile, const raster_chunk *chunk, size_t count)
 {
     for (int by = 0; by * AMB_BLOCK_H < tile->bottom; by++)
-        for (size_t i = 0; i < count; i++)
-            for (int bx = 0; bx * AMB_BLOCK_W < tile->right; bx++)
+        for (size_t i = 0; i < count; i++) {
+            if (!set_clip(tile, chunk[i].draw) || (by + 1) * AMB_BLOCK_H <= tile->clip_y0 ||
+                by * AMB_BLOCK_H >= tile->clip_y1)
+                continue;
+            for (int bx = tile->clip_x0 / AMB_BLOCK_W; bx * AMB_BLOCK_W < tile->clip_x1; bx++)
                 fragment_screen(tile, &chunk[i].draw->state, bx, by);
+        }
+}
+
+/* Plays `count` primitives of the chunk; `index` is readable to AMB_LANES. */
+static inline void play_group(const raster_tile *tile, raster_shading *s, const raster_chunk *chunk,
+                              const int32_t *index, int count)
+{
+    edge_group g;
+    make_group(tile, chunk, index, &g);
+    for (int n = 0; n < count; n++) {
+        for (int i = 0; i < 3; i++)
+            s->number[i] = g.number[i][n];
+        s->primitive_front = g.primitive_front[n];
+        s->prepared = false;
+        if (chunk->draw->lines) {
+            play_line(tile, s, g.low[n], g.high[n]);
+            continue;
+        }
+        if (chunk->draw->points) {
+            play_point(tile, s, g.low[n], g.high[n]);
+            continue;
+        }
+        if (!(g.small >> n & 1u)) {
+            play_large(tile, s, g.low[n], g.high[n]);
+            continue;
+        }
+        raster_edge e[3];
+        for (int i = 0; i < 3; i++)
+            e[i] = (raster_edge){g.c[i][n], g.a[i][n], g.b[i][n], g.bias[i][n]};
+        s->inverse_area = g.inverse_area[n];
+        cover_32(tile, s, e, box_in_tile(tile, g.low[n], g.high[n]));
+    }
 }
 
 /* The chunk's binned and large triangles, merged back into their order. */
-static void play_chunk(const raster_tile *tile, raster_shading *s, const raster_chunk *chunk, int number)
+static void play_chunk(raster_tile *tile, raster_shading *s, const raster_chunk *chunk, int number)
 {
     const uint16_t *binned = chunk->entry + chunk->tile_start[number];
     const uint16_t *binned_end = chunk->entry + chunk->tile_start[number + 1];
     const uint16_t *large = chunk->large, *large_end = chunk->large + chunk->large_count;
     s->chunk = chunk;
     s->draw = &chunk->draw->state;
+    if (!set_clip(tile, chunk->draw))
+        return;
     while (binned < binned_end || large < large_end) {
         int32_t index[AMB_LANES];
         int count = 0;

@@ -5,12 +5,13 @@
 #define raster_vertices WIDE(raster_vertices)
 void raster_vertices(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
 
-static i32x clip_code(v4x clip, f32x guard_x, f32x guard_y)
+static i32x clip_code(v4x clip, f32x guard_x, f32x guard_y, bool depth_clamp)
 {
     f32x limit_x = guard_x * clip.w, limit_y = guard_y * clip.w;
     maskx finite = f_is_finite(clip.x) & f_is_finite(clip.y) & f_is_finite(clip.z) & f_is_finite(clip.w);
-    i32x code = (clip.z < 0.0f) & RASTER_NEAR;
-    code |= (clip.z > clip.w) & RASTER_FAR;
+    i32x code = i_set(0);
+    if (!depth_clamp)
+        code = ((clip.z < 0.0f) & RASTER_NEAR) | ((clip.z > clip.w) & RASTER_FAR);
     code |= (clip.x < -limit_x) & RASTER_LEFT;
     code |= (clip.x > limit_x) & RASTER_RIGHT;
     code |= (clip.y < -limit_y) & RASTER_BOTTOM;
@@ -61,7 +62,7 @@ void raster_vertices(const amb_pass *pass, raster_chunk *chunk, raster_scratch *
         f_store(scratch->clip_y + first, out.clip.y);
         f_store(scratch->clip_z + first, out.clip.z);
         f_store(scratch->clip_w + first, out.clip.w);
-        i32x code = clip_code(out.clip, f_set(pass->guard_x), f_set(pass->guard_y));
+        i32x code = clip_code(out.clip, f_set(pass->guard_x), f_set(pass->guard_y), draw->depth_clamp);
         i_store(scratch->code + first, code);
         i_store(chunk->x + first, snap(out.clip.x / out.clip.w, half_w, half_w));
         i_store(chunk->y + first, snap(out.clip.y / out.clip.w, -half_h, half_h));

@@ -38,7 +38,7 @@ typedef struct amb_fs_in {
     f32x depth;           /* 0…1; for full-screen draws the far plane, 1 */
     maskx live;           /* covered lanes that passed the early depth test; others are helpers for derivatives */
     maskx front;          /* all lanes alike: front face */
-    int primitive;        /* running number of the triangle in its draw, before clipping */
+    int primitive;        /* running number of the triangle, line or point in its draw, before clipping */
     int thread;           /* 0…threads-1, for per-thread scratch */
 } amb_fs_in;
 
@@ -59,12 +59,64 @@ typedef enum amb_compare {
                               * still clear. Without a depth image every test passes. */
     AMB_NEVER, AMB_LESS, AMB_EQUAL, AMB_LESS_EQUAL, AMB_GREATER, AMB_NOT_EQUAL, AMB_GREATER_EQUAL, AMB_ALWAYS
 } amb_compare;
+typedef enum amb_topology {
+    AMB_TRIANGLES,      /* corners 3i, 3i+1, 3i+2 */
+    AMB_TRIANGLE_STRIP, /* i, i+1, i+2; odd triangles take the last two in the other order, so that faces agree */
+    AMB_TRIANGLE_FAN,   /* 0, i+1, i+2 */
+    AMB_LINES,          /* 2i, 2i+1; one pixel wide, diamond-exit rule, never culled, always front */
+    AMB_LINE_STRIP,     /* i, i+1 */
+    AMB_POINTS,         /* i; squares of point_size, top-left rule, never culled, always front */
+} amb_topology;         /* an index at or above vertex_count drops what uses it, so it also cuts strips */
+
 typedef enum amb_blend {
     AMB_BLEND_OFF,
     AMB_BLEND_ALPHA,    /* src·a + dst·(1-a); alpha: a + dst·(1-a) */
     AMB_BLEND_ADD,      /* src + dst */
     AMB_BLEND_MULTIPLY, /* src · dst */
+    AMB_BLEND_EQUATION, /* amb_draw.equation */
 } amb_blend;
+
+typedef enum amb_factor {
+    AMB_FACTOR_ZERO, AMB_FACTOR_ONE,
+    AMB_FACTOR_SOURCE, AMB_FACTOR_ONE_MINUS_SOURCE,             /* the same channel of the shader's colour */
+    AMB_FACTOR_SOURCE_ALPHA, AMB_FACTOR_ONE_MINUS_SOURCE_ALPHA,
+    AMB_FACTOR_TARGET, AMB_FACTOR_ONE_MINUS_TARGET,             /* of the stored colour; an absent alpha is 1 */
+    AMB_FACTOR_TARGET_ALPHA, AMB_FACTOR_ONE_MINUS_TARGET_ALPHA,
+    AMB_FACTOR_SOURCE_ALPHA_SATURATE,                           /* min(source alpha, 1 - target alpha); for alpha 1 */
+    AMB_FACTOR_CONSTANT, AMB_FACTOR_ONE_MINUS_CONSTANT,         /* amb_draw.blend_constant */
+    AMB_FACTOR_SECOND, AMB_FACTOR_ONE_MINUS_SECOND,             /* of color[1], with one colour attachment */
+    AMB_FACTOR_SECOND_ALPHA, AMB_FACTOR_ONE_MINUS_SECOND_ALPHA,
+} amb_factor;
+
+typedef enum amb_blend_op {
+    AMB_BLEND_SUM,        /* source · fs + target · ft */
+    AMB_BLEND_DIFFERENCE, /* source · fs - target · ft */
+    AMB_BLEND_REVERSE,    /* target · ft - source · fs */
+    AMB_BLEND_MIN, AMB_BLEND_MAX, /* of source and target, without factors; a NaN source gives the target */
+} amb_blend_op;
+
+typedef struct amb_blend_equation {
+    amb_factor color_source, color_target, alpha_source, alpha_target;
+    amb_blend_op color_op, alpha_op;
+} amb_blend_equation;
+
+typedef enum amb_stencil_op {
+    AMB_STENCIL_KEEP, AMB_STENCIL_ZERO, AMB_STENCIL_REPLACE, AMB_STENCIL_INCREMENT_CLAMP, AMB_STENCIL_DECREMENT_CLAMP,
+    AMB_STENCIL_INVERT, AMB_STENCIL_INCREMENT_WRAP, AMB_STENCIL_DECREMENT_WRAP,
+} amb_stencil_op;
+
+typedef struct amb_stencil_face {
+    amb_compare compare;                     /* (reference & mask) against (stored & mask); DEFAULT: ALWAYS */
+    amb_stencil_op fail, depth_fail, pass;
+} amb_stencil_face;
+
+typedef struct amb_stencil {
+    bool on;
+    uint8_t reference, read_mask_off, write_mask_off; /* bits that are not compared, not written */
+    amb_stencil_face front, back;
+} amb_stencil;
+
+typedef struct amb_rect { int x, y, width, height; } amb_rect; /* pixels, y down */
 
 typedef struct amb_draw {
     const char *label; /* for statistics and errors; static storage; may be NULL */
@@ -74,7 +126,7 @@ typedef struct amb_draw {
     const void *uniforms; size_t uniforms_size; /* copied when recorded; pointers inside must outlive the pass */
     int varying_floats;           /* sizeof(varyings) / sizeof(f32x), 0…AMB_MAX_VARYINGS */
     const uint32_t *indices;      /* NULL: not indexed; must outlive the pass */
-    uint32_t count;               /* indices or vertices; a trailing partial triangle is dropped */
+    uint32_t count;               /* indices or vertices; a trailing partial primitive is dropped */
     uint32_t vertex_count;        /* indices at or above it drop their triangle; 0 for non-indexed draws */
     uint32_t instances;           /* 0 means 1 */
     amb_cull cull;
@@ -84,19 +136,41 @@ typedef struct amb_draw {
     bool writes_depth;            /* the fragment shader writes out->depth: late depth test */
     amb_blend blend[AMB_MAX_TARGETS];
     uint32_t targets_off;         /* bit i: attachment i is not written */
+
+    amb_topology topology;
+    float point_size;             /* pixels, 0 means 1; at most 4096 */
+    bool wireframe;               /* triangles that are not culled are drawn as their three edges, by the line rule */
+    amb_rect scissor;             /* width and height 0: the whole target */
+    bool depth_clamp;             /* no near and far clipping; depth is clamped to 0…1 */
+    /* Added to a triangle's depth, as D3D11 for float depth: depth_bias · 2^(e - 23) + depth_bias_slope · m, where e is
+     * the exponent of the triangle's largest depth and m = max(|∂z/∂x|, |∂z/∂y|); then at most (at least)
+     * depth_bias_clamp, if it is above (below) 0. The sum is clamped to 0…1. */
+    float depth_bias, depth_bias_slope, depth_bias_clamp;
+    uint8_t channels_off[AMB_MAX_TARGETS]; /* bit c: channel c of that attachment is not written */
+    amb_blend_equation equation[AMB_MAX_TARGETS]; /* where blend is AMB_BLEND_EQUATION */
+    v4 blend_constant;
+    amb_stencil stencil;          /* needs a stencil image */
 } amb_draw;
 
 typedef struct amb_target {
     amb_image *color[AMB_MAX_TARGETS]; /* all of one size; 1…4 channels each; NULL ends the list */
     amb_image *depth;                  /* one channel; may be NULL */
+    amb_image *stencil;                /* one channel of whole numbers 0…255; may be NULL */
     v4 clear_color[AMB_MAX_TARGETS];
     float clear_depth;                 /* used as it is: give 1 for the usual */
+    uint8_t clear_stencil;
     bool keep;                         /* true: start from the images' contents instead of the clear values */
 } amb_target;
 
+/* Counts of a pass, the same at any thread count. "triangles" are the primitives, lines and points too. */
 typedef struct amb_pass_stats {
-    uint64_t vertices, triangles_in, triangles_clipped, triangles_culled, triangles_binned, blocks_shaded,
-        fragments_shaded;
+    uint64_t vertices;          /* vertex shader lanes alive */
+    uint64_t triangles_in;
+    uint64_t triangles_clipped; /* cut by a plane */
+    uint64_t triangles_culled;  /* dropped: bad index or vertex, outside, facing away, degenerate, on no pixel */
+    uint64_t triangles_binned;  /* what was left, pieces of clipped ones counted each */
+    uint64_t blocks_shaded;     /* fragment shader calls: depends on the lanes */
+    uint64_t fragments_shaded;  /* live lanes of those calls */
 } amb_pass_stats;
 
 typedef struct amb_pass amb_pass;
