@@ -27,20 +27,113 @@ amb_status amb_check_png(const uint8_t *data, size_t bytes, const char *name, am
     return amb_fail(error, AMB_ERROR_FORMAT, "%s: truncated PNG of %zu bytes", name, bytes);
 }
 
+/* What a JPEG has defined so far, by table number. */
+typedef struct jpeg_tables {
+    bool quantisation[4], huffman[2][4]; /* DC, AC */
+    bool has_frame, is_progressive;
+    int components;
+    uint8_t id[4], table[4]; /* of the frame's components: name, quantisation table */
+} jpeg_tables;
+
+static bool read_quantisation(const uint8_t *at, size_t length, jpeg_tables *tables)
+{
+    while (length > 0) {
+        size_t size = 1 + (at[0] >> 4 ? 128 : 64);
+        if (at[0] >> 4 > 1 || (at[0] & 15) > 3 || size > length)
+            return false;
+        tables->quantisation[at[0] & 15] = true;
+        at += size;
+        length -= size;
+    }
+    return true;
+}
+
+/* The code lengths must leave room for each other (Kraft): stb_image trusts them. */
+static bool read_huffman(const uint8_t *at, size_t length, jpeg_tables *tables)
+{
+    while (length > 0) {
+        unsigned symbols = 0, used = 0;
+        if (length < 17 || at[0] >> 4 > 1 || (at[0] & 15) > 3)
+            return false;
+        for (unsigned bits = 1; bits <= 16; bits++) {
+            symbols += at[bits];
+            used += (unsigned)at[bits] << (16 - bits);
+        }
+        if (symbols > 256 || used > 65536 || 17 + (size_t)symbols > length)
+            return false;
+        tables->huffman[at[0] >> 4][at[0] & 15] = true;
+        at += 17 + symbols;
+        length -= 17 + symbols;
+    }
+    return true;
+}
+
+static bool read_frame(const uint8_t *at, size_t length, jpeg_tables *tables)
+{
+    if (tables->has_frame || length < 6 || at[5] < 1 || at[5] > 4 || length != 6 + 3 * (size_t)at[5])
+        return false;
+    tables->has_frame = true;
+    tables->components = at[5];
+    for (int i = 0; i < tables->components; i++) {
+        tables->id[i] = at[6 + 3 * i];
+        tables->table[i] = at[8 + 3 * i];
+        if (tables->table[i] > 3)
+            return false;
+    }
+    return true;
+}
+
+/* A scan may only name components and tables that were defined: stb_image decodes with whatever memory held. */
+static bool read_scan(const uint8_t *at, size_t length, const jpeg_tables *tables)
+{
+    if (!tables->has_frame || length < 1 || at[0] < 1 || at[0] > tables->components || length != 4 + 2 * (size_t)at[0])
+        return false;
+    const uint8_t *spectral = at + 1 + 2 * at[0]; /* first and last coefficient, bit position */
+    bool needs_dc = !tables->is_progressive || (spectral[0] == 0 && spectral[2] >> 4 == 0);
+    bool needs_ac = !tables->is_progressive || spectral[0] > 0;
+    for (int i = 0; i < at[0]; i++) {
+        uint8_t dc = at[2 + 2 * i] >> 4, ac = at[2 + 2 * i] & 15;
+        int which = -1;
+        for (int k = 0; k < tables->components; k++)
+            if (tables->id[k] == at[1 + 2 * i])
+                which = k;
+        if (which < 0 || !tables->quantisation[tables->table[which]] || dc > 3 || ac > 3 ||
+            (needs_dc && !tables->huffman[0][dc]) || (needs_ac && !tables->huffman[1][ac]))
+            return false;
+    }
+    return true;
+}
+
+static bool read_segment(uint8_t marker, const uint8_t *at, size_t length, jpeg_tables *tables)
+{
+    switch (marker) {
+    case 0xdb:
+        return read_quantisation(at, length, tables);
+    case 0xc4:
+        return read_huffman(at, length, tables);
+    case 0xda:
+        return read_scan(at, length, tables);
+    case 0xc2:
+        tables->is_progressive = true;
+        return read_frame(at, length, tables);
+    case 0xc0:
+    case 0xc1:
+        return read_frame(at, length, tables);
+    default:
+        return true;
+    }
+}
+
 amb_status amb_check_jpeg(const uint8_t *data, size_t bytes, const char *name, amb_error *error)
 {
-    size_t at = 2;
-    while (bytes - at >= 2) {
-        if (data[at] != 0xff) { /* entropy-coded data after a scan header, or stray bytes */
-            at++;
-            continue;
-        }
+    jpeg_tables tables = {0};
+    for (size_t at = 2; bytes - at >= 2;) {
         uint8_t marker = data[at + 1];
         bool is_data = marker == 0x00 || (marker >= 0xd0 && marker <= 0xd8) || marker == 0x01;
-        if (marker == 0xd9)
-            return AMB_OK;
-        if (marker == 0xff) { /* fill byte */
+        if (data[at] != 0xff || marker == 0xff) { /* entropy-coded data after a scan header; fill bytes */
             at++;
+        } else if (marker == 0xd9) {
+            return AMB_OK;
         } else if (is_data) {
             at += 2;
         } else {
@@ -48,9 +141,9 @@ amb_status amb_check_jpeg(const uint8_t *data, size_t bytes, const char *name, a
             size_t length = left < 2 ? SIZE_MAX : (size_t)(data[at + 2] << 8 | data[at + 3]);
             if (length > left)
                 break;
-            if (length < 2)
-                return amb_fail(error, AMB_ERROR_FORMAT, "%s: damaged JPEG: segment at byte %zu has length %zu", name,
-                                at, length);
+            if (length < 2 || !read_segment(marker, data + at + 4, length - 2, &tables))
+                return amb_fail(error, AMB_ERROR_FORMAT, "%s: damaged JPEG: segment 0x%02x at byte %zu", name, marker,
+                                at);
             at += 2 + length;
         }
     }

@@ -1,18 +1,15 @@
 /* amb_read_mesh: OBJ, PLY and glTF through Assimp's C API, all meshes of a file in one. */
 #include "io/file.h"
+#include "io/mesh_check.h"
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
-
-/* What a file may claim before Assimp takes memory for it. */
-#define MESH_MAX_ELEMENTS AMB_MAX_MESH_VERTICES
 
 static const char *extension_of(const char *path)
 {
@@ -22,66 +19,6 @@ static const char *extension_of(const char *path)
         if (strcasecmp(dot + 1, known[i]) == 0)
             return known[i];
     return NULL;
-}
-
-static uint64_t parse_count(const uint8_t *at, const uint8_t *end)
-{
-    uint64_t count = 0;
-    while (at < end && (*at == ' ' || *at == '\t' || *at == ':' || *at == '\r' || *at == '\n'))
-        at++;
-    while (at < end && isdigit(*at)) {
-        count = count * 10 + (uint64_t)(*at++ - '0');
-        if (count > UINT32_MAX)
-            return UINT32_MAX;
-    }
-    return count;
-}
-
-/* A PLY header names its element counts, and Assimp reserves memory for them unseen. Every element takes a byte. */
-static amb_status check_ply(const uint8_t *data, size_t bytes, const char *name, amb_error *error)
-{
-    const uint8_t *end = data + bytes, *header_end = memmem(data, bytes, "end_header", 10);
-    if (bytes < 4 || memcmp(data, "ply", 3) != 0 || !header_end)
-        return amb_fail(error, AMB_ERROR_FORMAT, "%s: not a PLY file, or its header is truncated", name);
-    for (const uint8_t *at = data; at < header_end;) {
-        if ((size_t)(header_end - at) > 8 && memcmp(at, "element ", 8) == 0) {
-            const uint8_t *count = memchr(at + 8, ' ', (size_t)(header_end - at) - 8);
-            uint64_t elements = count ? parse_count(count, header_end) : 0;
-            if (elements > (uint64_t)(end - header_end))
-                return amb_fail(error, AMB_ERROR_FORMAT, "%s: truncated PLY: %llu elements in %zu bytes", name,
-                                (unsigned long long)elements, bytes);
-        }
-        const uint8_t *line_end = memchr(at, '\n', (size_t)(header_end - at));
-        if (!line_end)
-            break;
-        at = line_end + 1;
-    }
-    return AMB_OK;
-}
-
-/* glTF accessors state their counts in JSON ("count": N), with or without data behind them. */
-static amb_status check_gltf(const uint8_t *data, size_t bytes, const char *name, amb_error *error)
-{
-    const uint8_t *end = data + bytes, *at = data;
-    while ((at = memmem(at, (size_t)(end - at), "\"count\"", 7))) {
-        at += 7;
-        if (parse_count(at, end) > MESH_MAX_ELEMENTS)
-            return amb_fail(error, AMB_ERROR_LIMIT, "%s: glTF accessor of %llu elements; at most %u are allowed", name,
-                            (unsigned long long)parse_count(at, end), MESH_MAX_ELEMENTS);
-    }
-    return AMB_OK;
-}
-
-static amb_status check_claims(const uint8_t *data, size_t bytes, const char *extension, const char *name,
-                               amb_error *error)
-{
-    if (bytes == 0)
-        return amb_fail(error, AMB_ERROR_FORMAT, "%s: the file is empty", name);
-    if (strcmp(extension, "ply") == 0)
-        return check_ply(data, bytes, name, error);
-    if (extension[0] == 'g')
-        return check_gltf(data, bytes, name, error);
-    return AMB_OK;
 }
 
 /* Which of a file's meshes are triangles, and their sums. */
@@ -236,7 +173,7 @@ amb_status amb_read_mesh_memory(const void *data, size_t bytes, const char *exte
                                 amb_error *error)
 {
     *out = NULL;
-    amb_status status = check_claims(data, bytes, extension, name, error);
+    amb_status status = amb_check_mesh_file(data, bytes, extension, name, error);
     if (status != AMB_OK)
         return status;
     if (bytes > UINT32_MAX)
@@ -262,7 +199,7 @@ amb_status amb_read_mesh(const char *path, amb_mesh **out, amb_error *error)
     if (status == AMB_OK && !extension)
         status = amb_fail(error, AMB_ERROR_FORMAT, "%s: unknown kind of model; allowed are .obj .ply .gltf .glb", path);
     if (status == AMB_OK)
-        status = check_claims(data, bytes, extension, path, error);
+        status = amb_check_mesh_file(data, bytes, extension, path, error);
     free(data);
     if (status != AMB_OK)
         return status;
