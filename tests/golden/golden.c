@@ -1,7 +1,7 @@
 /* The golden manifest: SHA-256 of the float pixels of every scene, with built-in assets and default parameters.
  *
- *   golden check MANIFEST      renders every row at every instruction set of this processor and 1, 2 and 5 threads
- *   golden update MANIFEST     writes the manifest anew, if all of those agree
+ *   golden check MANIFEST [SCENE]   renders every row at every instruction set of this processor and 1, 2, 5 threads
+ *   golden update MANIFEST          writes the manifest anew, if all of those agree
  *
  * Each line of the manifest: SCENE TIME WIDTHxHEIGHT LAYER SHA256, the hash being that of amb_image_sha256. The layer
  * "post" is color after the scene's own chain. */
@@ -26,7 +26,7 @@ typedef struct golden_case { /* what is rendered of every scene */
 } golden_case;
 
 static const golden_case cases[] = {
-    {"0", 160, 120, true}, {"3", 640, 480, false}, {"7.5", 97, 61, true}, {"1234.5", 61, 97, false}};
+    {"0", 160, 120, true}, {"3", 200, 150, false}, {"7.5", 97, 61, true}, {"1234.5", 61, 97, false}};
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
 
 typedef struct row {
@@ -147,65 +147,90 @@ static void check_layer(manifest *m, const char *scene, const golden_case *c, co
     }
 }
 
-static amb_status check_case(manifest *m, const amb_show *show, const amb_chain *chain, const golden_case *c,
-                             const char *configuration, amb_error *error)
+/* A frame of the scene with every layer wanted, by the scene's own functions: several contexts share one state. */
+static amb_status render(const amb_scene *scene, const void *state, const void *params, const amb_context *context,
+                         const golden_case *c, amb_frame **frame, amb_error *error)
 {
-    static const char *const all[] = {"all", NULL};
-    const char *scene = amb_show_scene(show)->name;
+    amb_image *image;
+    amb_status status = amb_frame_create(c->width, c->height, frame, error);
+    for (size_t i = 0; status == AMB_OK && c->all_layers && i < scene->aov_count; i++)
+        status = amb_frame_add_layer(*frame, scene->aovs[i].name, scene->aovs[i].channels, &image, error);
+    if (status != AMB_OK)
+        return status;
+    amb_scene_job job = {.context = context,
+                         .params = params,
+                         .time = strtod(c->time, NULL),
+                         .width = c->width,
+                         .height = c->height,
+                         .frame = *frame};
+    return scene->frame(state, &job, error);
+}
+
+static amb_status check_case(manifest *m, const amb_scene *scene, const void *state, const void *params,
+                             const amb_context *context, const golden_case *c, amb_error *error)
+{
+    char configuration[64];
     amb_frame *frame = NULL;
-    amb_status status =
-        amb_show_render(show, strtod(c->time, NULL), c->width, c->height, c->all_layers ? all : NULL, &frame, error);
+    amb_chain *chain = NULL;
+    snprintf(configuration, sizeof configuration, COMPILER " %s, %d thread%s", amb_isa_name(amb_context_isa(context)),
+             amb_context_threads(context), amb_context_threads(context) == 1 ? "" : "s");
+    amb_status status = render(scene, state, params, context, c, &frame, error);
     for (int i = 0; status == AMB_OK && i < frame->layer_count; i++)
-        check_layer(m, scene, c, frame->layer[i].name, frame->layer[i].image, configuration);
+        check_layer(m, scene->name, c, frame->layer[i].name, frame->layer[i].image, configuration);
+    if (status == AMB_OK)
+        status = amb_chain_create(context, scene->post ? scene->post : "display", &chain, error);
     if (status == AMB_OK)
         status = amb_chain_apply(chain, frame, 0, 0, error);
     if (status == AMB_OK)
-        check_layer(m, scene, c, "post", frame->layer[0].image, configuration);
+        check_layer(m, scene->name, c, "post", frame->layer[0].image, configuration);
+    amb_chain_close(&chain);
     amb_frame_close(&frame);
     return status;
 }
 
-/* Every scene at one instruction set and thread count; the assets are shared by the thread counts. */
-static amb_status check_configuration(manifest *m, const amb_context *context, amb_assets *assets, amb_error *error)
+enum { THREAD_COUNTS = 3 };
+static const int threads[THREAD_COUNTS] = {1, 2, 5};
+
+/* One scene at one instruction set: loaded once, by contexts[loader], rendered by all of them. */
+static amb_status check_scene(manifest *m, const amb_scene *scene, amb_context *const contexts[THREAD_COUNTS],
+                              int loader, amb_assets *assets, amb_error *error)
 {
-    char configuration[64];
-    amb_status status = AMB_OK;
-    snprintf(configuration, sizeof configuration, COMPILER " %s, %d thread%s", amb_isa_name(amb_context_isa(context)),
-             amb_context_threads(context), amb_context_threads(context) == 1 ? "" : "s");
-    for (int i = 0; status == AMB_OK && i < amb_scene_count(); i++) {
-        const amb_scene *scene = amb_scene_by_index(amb_context_isa(context), i);
-        amb_show *show = NULL;
-        amb_chain *chain = NULL;
-        status = amb_show_open(context, assets, scene->name, &show, error);
-        if (status == AMB_OK)
-            status = amb_chain_create(context, scene->post ? scene->post : "display", &chain, error);
+    void *state = NULL, *params = calloc(1, scene->params.size ? scene->params.size : 1);
+    if (!params)
+        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory");
+    amb_params_defaults(&scene->params, params);
+    amb_status status = scene->load ? scene->load(contexts[loader], assets, &state, error) : AMB_OK;
+    for (int i = 0; status == AMB_OK && i < THREAD_COUNTS; i++)
         for (int k = 0; status == AMB_OK && k < CASE_COUNT; k++)
-            status = check_case(m, show, chain, &cases[k], configuration, error);
-        amb_chain_close(&chain);
-        amb_show_close(&show);
-    }
+            status = check_case(m, scene, state, params, contexts[i], &cases[k], error);
+    if (scene->unload && state)
+        scene->unload(state);
+    free(params);
     return status;
 }
 
-static amb_status check_isa(manifest *m, amb_isa isa, amb_error *error)
+/* Each instruction set loads (and so generates its assets) with another number of threads. */
+static amb_status check_isa(manifest *m, amb_isa isa, int loader, const char *only, amb_error *error)
 {
-    static const int threads[] = {2, 1, 5};
-    amb_context *context[3] = {NULL};
+    amb_context *contexts[THREAD_COUNTS] = {NULL};
     amb_assets *assets = NULL;
     amb_status status = AMB_OK;
-    for (int i = 0; status == AMB_OK && i < 3; i++)
-        status = amb_context_create(&(amb_context_options){.isa = isa, .threads = threads[i]}, &context[i], error);
+    for (int i = 0; status == AMB_OK && i < THREAD_COUNTS; i++)
+        status = amb_context_create(&(amb_context_options){.isa = isa, .threads = threads[i]}, &contexts[i], error);
     if (status == AMB_OK)
-        status = amb_assets_create(context[0], &(amb_assets_options){.builtin_only = true}, &assets, error);
-    for (int i = 0; status == AMB_OK && i < 3; i++)
-        status = check_configuration(m, context[i], assets, error);
+        status = amb_assets_create(contexts[loader], &(amb_assets_options){.builtin_only = true}, &assets, error);
+    for (int i = 0; status == AMB_OK && i < amb_scene_count(); i++) {
+        const amb_scene *scene = amb_scene_by_index(isa, i);
+        if (!only || strcmp(only, scene->name) == 0)
+            status = check_scene(m, scene, contexts, loader, assets, error);
+    }
     amb_assets_close(&assets);
-    for (int i = 0; i < 3; i++)
-        amb_context_close(&context[i]);
+    for (int i = 0; i < THREAD_COUNTS; i++)
+        amb_context_close(&contexts[i]);
     return status;
 }
 
-static int check_all(manifest *m)
+static int check_all(manifest *m, const char *only)
 {
     static const amb_isa isas[] = {AMB_ISA_V2, AMB_ISA_V3, AMB_ISA_V4};
     amb_error error;
@@ -214,12 +239,12 @@ static int check_all(manifest *m)
             printf("golden: %s skipped: this processor lacks it\n", amb_isa_name(isas[i]));
             continue;
         }
-        if (check_isa(m, isas[i], &error) != AMB_OK) {
+        if (check_isa(m, isas[i], (int)i, only, &error) != AMB_OK) {
             fprintf(stderr, "golden: %s: %s\n", amb_isa_name(isas[i]), error.detail);
             return 3;
         }
     }
-    for (int i = 0; i < m->count; i++)
+    for (int i = 0; i < m->count && !only; i++)
         if (!m->row[i].was_seen) {
             fprintf(stderr, "%s: in the manifest, but nothing renders it\n", m->row[i].key);
             m->wrong++;
@@ -230,14 +255,15 @@ static int check_all(manifest *m)
 int main(int argc, char **argv)
 {
     manifest m = {0};
-    if (argc != 3 || (strcmp(argv[1], "check") != 0 && strcmp(argv[1], "update") != 0)) {
-        fprintf(stderr, "usage: golden check|update MANIFEST\n");
+    bool is_check = argc >= 3 && argc <= 4 && strcmp(argv[1], "check") == 0;
+    if (!is_check && (argc != 3 || strcmp(argv[1], "update") != 0)) {
+        fprintf(stderr, "usage: golden check MANIFEST [SCENE] | golden update MANIFEST\n");
         return 2;
     }
-    m.is_update = strcmp(argv[1], "update") == 0;
+    m.is_update = !is_check;
     int code = m.is_update ? 0 : read_manifest(&m, argv[2]);
     if (code == 0)
-        code = check_all(&m);
+        code = check_all(&m, argc == 4 ? argv[3] : NULL);
     if (code == 0 && m.is_update)
         code = write_manifest(&m, argv[2]);
     printf("golden: " COMPILER ": %d layers rendered, %d wrong; %d rows\n", m.compared, m.wrong, m.count);
