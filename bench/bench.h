@@ -29,6 +29,8 @@ typedef struct bench_count {
 typedef struct bench_workload {
     const char *name, *about;
     amb_status (*open)(const bench_options *options, void **state, amb_error *error);
+    /* Before every run of ours, not timed: puts back what a run changes. May be NULL. */
+    amb_status (*prepare)(void *state, amb_error *error);
     /* Once, start to finish. */
     amb_status (*run)(void *state, const amb_context *context, amb_error *error);
     /* The same work on the peer, finished when it returns. NULL: there is no such thing. */
@@ -44,6 +46,7 @@ typedef struct bench_workload {
 
 extern const bench_workload *const bench_workloads[]; /* NULL-ended; the first two measure the machine's peaks */
 extern const bench_workload bench_flops, bench_copy, bench_mesh;
+extern const bench_workload bench_post_bloom, bench_post_mlaa, bench_post_chain;
 
 double bench_seconds(void); /* a clock that only goes forward */
 /* Root mean square difference of the first three channels of a planar image and interleaved RGBA pixels, rows from the

@@ -90,8 +90,11 @@ static amb_status add_rows(const settings *set, report *r, amb_error *error)
 
 static amb_status run_row(const bench_workload *w, void *state, row *r, double *seconds, amb_error *error)
 {
+    amb_status status = r->isa && w->prepare ? w->prepare(state, error) : AMB_OK;
+    if (status)
+        return status;
     double start = bench_seconds();
-    amb_status status = r->isa ? w->run(state, r->context, error) : w->run_peer(state, error);
+    status = r->isa ? w->run(state, r->context, error) : w->run_peer(state, error);
     *seconds = bench_seconds() - start;
     return status;
 }

@@ -5,5 +5,8 @@ const bench_workload *const bench_workloads[] = {
     &bench_flops,
     &bench_copy,
     &bench_mesh,
+    &bench_post_bloom,
+    &bench_post_mlaa,
+    &bench_post_chain,
     NULL,
 };
