@@ -37,7 +37,7 @@ typedef struct lucy_material {
 
 static const char *const material_names[] = {"marble", "bronze", "porcelain", "gold", "obsidian", NULL};
 static const lucy_material materials[] = {
-    {{0.76f, 0.72f, 0.66f}, {0.05f, 0.05f, 0.05f}, {0.42f, 0.31f, 0.22f}, 0.6f, 1.4f},
+    {{0.72f, 0.68f, 0.62f}, {0.05f, 0.05f, 0.05f}, {0.42f, 0.31f, 0.22f}, 0.6f, 1.4f},
     {{0.045f, 0.026f, 0.016f}, {0.58f, 0.345f, 0.185f}, {0.085f, 0.21f, 0.17f}, 0.95f, 2.8f},
     {{0.86f, 0.86f, 0.88f}, {0.06f, 0.06f, 0.06f}, {0.70f, 0.70f, 0.75f}, 0.3f, 0.5f},
     {{0.03f, 0.02f, 0.01f}, {1.0f, 0.77f, 0.34f}, {0.10f, 0.05f, 0.02f}, 0.7f, 2.0f},
@@ -76,7 +76,7 @@ static const amb_param lucy_param_table[] = {
      FIELD(interreflection),
      "trace reflected rays, so that the statue and the floor show the statue"},
     {"floor", AMB_PARAM_BOOL, "", 0, 0, {1}, NULL, FIELD(floor), "a polished floor around the plinth"},
-    {"key", AMB_PARAM_FLOAT, "", 0, 100, {0.85f}, NULL, FIELD(key), "strength of the key light; 0: none"},
+    {"key", AMB_PARAM_FLOAT, "", 0, 100, {0.66f}, NULL, FIELD(key), "strength of the key light; 0: none"},
     {"key_color", AMB_PARAM_COLOR, "", 0, 4, {1.0f, 0.90f, 0.76f}, NULL, FIELD(key_color), "colour of the key light"},
     {"key_azimuth",
      AMB_PARAM_FLOAT,
@@ -243,6 +243,8 @@ static v3x key_light(const lucy_uniforms *u, const lucy_surface *s, v3x view, u3
     v3x half = v3x_normalize(v3x_add(view, to_key));
     f32x lobe = specular_cook_torrance(s->normal, to_key, view, slope) * AMB_PI;
     v3x f = reflectance(u, s->material, rise_of(u, s->material, v3x_dot(view, half)));
+    if (s->material == &floor_material) /* its glare would be a bright patch that draws the eye */
+        lobe = f_set(0.0f);
     v3x sum = v3x_add(s->albedo, v3x_scale(f, lobe));
     return v3x_mul(v3x_scale(sum, light), v3x_splat(u->key_rgb));
 }
@@ -425,15 +427,15 @@ static void background_fragment(const amb_fs_in *in, amb_fs_out *out)
  */
 
 static const amb_camera_key camera_keys[] = {
-    {0.0f, {-1.1f, 1.2f, 3.3f}, {0.0f, 1.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {8.0f, {0.9f, 0.75f, 3.5f}, {0.0f, 1.02f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {16.0f, {2.3f, 1.5f, 1.5f}, {0.05f, 1.25f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {24.0f, {2.4f, 2.0f, -1.9f}, {0.0f, 1.1f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {32.0f, {-0.6f, 1.3f, -3.6f}, {0.0f, 1.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {40.0f, {-2.9f, 0.6f, -1.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {48.0f, {-1.5f, 1.55f, 1.6f}, {-0.05f, 1.45f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {54.0f, {-0.35f, 1.6f, 1.9f}, {-0.05f, 1.48f, 0.0f}, {0.0f, 1.0f, 0.0f}},
-    {60.0f, {-1.1f, 1.2f, 3.3f}, {0.0f, 1.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {0.0f, {-1.035f, 1.20f, 3.186f}, {0.00f, 1.00f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {8.0f, {1.199f, 0.90f, 2.967f}, {0.00f, 1.02f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {16.0f, {2.828f, 1.30f, 1.143f}, {0.02f, 1.06f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {24.0f, {2.714f, 1.80f, -1.696f}, {0.00f, 1.03f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {32.0f, {0.000f, 1.35f, -3.400f}, {0.00f, 1.00f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {40.0f, {-2.855f, 0.80f, -1.331f}, {0.00f, 1.03f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {48.0f, {-1.685f, 1.62f, 1.414f}, {-0.03f, 1.40f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {54.0f, {-0.484f, 1.60f, 1.941f}, {-0.04f, 1.50f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+    {60.0f, {-1.035f, 1.20f, 3.186f}, {0.00f, 1.00f, 0.0f}, {0.0f, 1.0f, 0.0f}},
 };
 
 static v2 cosine_sine(float degrees)
