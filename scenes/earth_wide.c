@@ -1,0 +1,217 @@
+/* Scene earth: day and night, shining oceans, relief, clouds and their shadows, and the air (Ambiance report, Earth).
+ */
+#include "scenes/planet_air_wide.h"
+
+#include "shade/diffuse.h"
+#include "shade/specular.h"
+
+#include <stdlib.h>
+
+typedef struct earth_params {
+    planet_params planet;
+    planet_air_params air;
+    float wrap, night, gloss, gloss_exponent, bump, parallax, clouds, cloud_height, cloud_ring, cloud_shadow,
+        cloud_bump;
+    int show_air;
+} earth_params;
+
+#define FIELD(name) offsetof(earth_params, name)
+static const amb_param earth_table[] = {
+    PLANET_PARAM_ROWS(earth_params, -62, 14, 200, 240, 23.4f),
+    PLANET_AIR_ROWS(earth_params, 0.020f, 0.0042f, 0.046f, 0.108f, 0.265f, 0.035f, 0.78f, 1, 1, 1, 1, 1.35f),
+    {"wrap", AMB_PARAM_FLOAT, "", 0, 1, {0.06f}, NULL, FIELD(wrap), "w of the ground's wrapped diffuse light"},
+    {"night", AMB_PARAM_FLOAT, "", 0, 20, {0.9f}, NULL, FIELD(night), "brightness of the cities at night"},
+    {"gloss", AMB_PARAM_FLOAT, "", 0, 10, {0.55f}, NULL, FIELD(gloss), "strength of the oceans' highlight"},
+    {"gloss_exponent", AMB_PARAM_FLOAT, "", 1, 1000, {42}, NULL, FIELD(gloss_exponent), "its exponent"},
+    {"bump", AMB_PARAM_FLOAT, "", 0, 10, {1.0f}, NULL, FIELD(bump), "strength of the relief; 0: none"},
+    {"parallax", AMB_PARAM_FLOAT, "", 0, 0.02f, {0.0016f}, NULL, FIELD(parallax), "height for parallax; 0: none"},
+    {"clouds", AMB_PARAM_FLOAT, "", 0, 1, {1}, NULL, FIELD(clouds), "opacity of the clouds; 0: none"},
+    {"cloud_height", AMB_PARAM_FLOAT, "radii", 0, 0.1f, {0.0035f}, NULL, FIELD(cloud_height), "of their shell"},
+    {"cloud_ring", AMB_PARAM_FLOAT, "", 0.5f, 50, {7}, NULL, FIELD(cloud_ring), "exponent of the ring that fades them"},
+    {"cloud_shadow", AMB_PARAM_FLOAT, "", 0, 1, {0.6f}, NULL, FIELD(cloud_shadow), "strength of their shadows"},
+    {"cloud_bump", AMB_PARAM_FLOAT, "", 0, 10, {1.0f}, NULL, FIELD(cloud_bump), "strength of their relief"},
+    {"air", AMB_PARAM_BOOL, "", 0, 0, {1}, NULL, FIELD(show_air), "draw the air"},
+};
+#undef FIELD
+
+enum { EARTH_DAY = PLANET_AOVS, EARTH_NIGHT, EARTH_GLOSS, EARTH_AOVS };
+static const amb_aov earth_aovs[EARTH_AOVS] = {
+    PLANET_AOV_ROWS,
+    {"day", 3, "sunlit ground"},
+    {"night", 3, "city lights"},
+    {"gloss", 3, "highlight of the oceans"},
+};
+
+typedef struct earth_state {
+    planet_state planet;
+    const amb_texture *colour, *night, *water, *height, *clouds;
+    amb_texture *relief, *cloud_relief;
+} earth_state;
+
+typedef struct earth_uniforms {
+    planet_air air; /* starts with the view */
+    const earth_state *state;
+    const earth_params *params;
+    float cloud_shell;
+} earth_uniforms;
+
+/* ---- shaders ---------------------------------------------------------------------------------------------------- */
+
+/* Share of sunlight that passes the clouds above a point of the ground. */
+static f32x under_clouds(const earth_uniforms *u, const planet_point *p, f32x n_dot_l)
+{
+    const planet_view *view = &u->air.view;
+    f32x way = (u->cloud_shell - 1.0f) / f_max(n_dot_l, f_set(0.12f));
+    v3x above = v3x_add(p->world, v3x_scale(v3x_splat(view->to_sun), way));
+    v2x uv = planet_uv(v3x_normalize(planet_to_own(view, above)));
+    v4x cover = amb_sample_2d_grad(u->state->clouds, &planet_sampler, uv, p->uv_dx, p->uv_dy);
+    return 1.0f - cover.x * (u->params->cloud_shadow * u->params->clouds);
+}
+
+static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
+{
+    const earth_uniforms *u = in->uniforms;
+    const earth_params *k = u->params;
+    const planet_varyings *v = in->varyings;
+    const planet_view *view = &u->air.view;
+    planet_point p = planet_point_of(view, v->world);
+    v3x to_sun = v3x_splat(view->to_sun);
+
+    f32x height = planet_map(u->state->height, &p).x;
+    v3x eye_tangent = normal_map_to_tangent(p.to_eye, p.east, p.south, p.normal);
+    p.uv = parallax_offset(p.uv, eye_tangent, height, k->parallax, 0.0f);
+    v3x albedo = v4x_xyz(planet_map(u->state->colour, &p));
+    f32x water = planet_map(u->state->water, &p).x;
+    v3x normal = planet_bumped(&p, planet_map(u->state->relief, &p), k->bump);
+
+    f32x n_dot_l = v3x_dot(normal, to_sun), smooth_n_dot_l = v3x_dot(p.normal, to_sun);
+    f32x lit = diffuse_wrapped(n_dot_l, k->wrap) * f_smoothstep(f_set(-0.12f), f_set(0.05f), smooth_n_dot_l);
+    v3x sunlight = v3x_scale(v3x_mul(v3x_splat(view->sun_rgb), planet_sunlight_at_ground(&u->air.air, smooth_n_dot_l)),
+                             under_clouds(u, &p, smooth_n_dot_l));
+    v3x day = v3x_mul(v3x_scale(albedo, lit), sunlight);
+    v3x night = v3x_scale(v4x_xyz(planet_map(u->state->night, &p)), diffuse_night(smooth_n_dot_l) * k->night);
+    f32x highlight = specular_blinn_phong(p.normal, to_sun, p.to_eye, k->gloss_exponent) * water * k->gloss;
+    v3x gloss = v3x_scale(sunlight, highlight);
+
+    planet_put_surface(view, out, &p, normal, albedo, 1.0f);
+    planet_put(view, out, EARTH_DAY, day);
+    planet_put(view, out, EARTH_NIGHT, night);
+    planet_put(view, out, EARTH_GLOSS, gloss);
+    out->color[0] = v4x_of3(v3x_add(v3x_add(day, night), gloss), f_set(1.0f));
+}
+
+/* Their alpha is faded by a view-aligned ring, so that they do not cut into the sky dome. */
+static void earth_clouds(const amb_fs_in *in, amb_fs_out *out)
+{
+    const earth_uniforms *u = in->uniforms;
+    const planet_varyings *v = in->varyings;
+    const planet_view *view = &u->air.view;
+    planet_point p = planet_point_of(view, v->world);
+    f32x cover = planet_map(u->state->clouds, &p).x;
+    v3x normal = planet_bumped(&p, planet_map(u->state->cloud_relief, &p), u->params->cloud_bump);
+    f32x smooth_n_dot_l = v3x_dot(p.normal, v3x_splat(view->to_sun));
+    f32x lit = diffuse_wrapped(v3x_dot(normal, v3x_splat(view->to_sun)), 0.15f) *
+               f_smoothstep(f_set(-0.14f), f_set(0.10f), smooth_n_dot_l);
+    v3x light = v3x_mul(v3x_splat(view->sun_rgb), planet_sunlight_at_ground(&u->air.air, smooth_n_dot_l));
+    f32x ring = view_aligned_ring(v3x_dot(p.normal, p.to_eye), u->params->cloud_ring);
+    f32x alpha = f_saturate(cover - ring) * u->params->clouds;
+    out->color[0] = v4x_of3(v3x_scale(light, lit * 0.92f), alpha);
+}
+
+/* ---- scene ------------------------------------------------------------------------------------------------------ */
+
+static void earth_unload(void *opaque)
+{
+    earth_state *state = opaque;
+    planet_unload(&state->planet);
+    amb_texture_close(&state->relief);
+    amb_texture_close(&state->cloud_relief);
+    free(state);
+}
+
+static amb_status earth_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
+{
+    earth_state *s = calloc(1, sizeof *s);
+    *out = NULL;
+    if (!s)
+        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene earth");
+    const struct {
+        const char *name;
+        const amb_texture **map;
+    } maps[] = {{"earth/color", &s->colour},
+                {"earth/night", &s->night},
+                {"earth/water", &s->water},
+                {"earth/height", &s->height},
+                {"earth/clouds", &s->clouds}};
+    amb_status status = planet_load(assets, &s->planet, error);
+    for (size_t i = 0; i < sizeof maps / sizeof *maps && status == AMB_OK; i++)
+        status = amb_assets_texture(assets, maps[i].name, maps[i].map, error);
+    amb_normal_map_options relief = {
+        .strength = 9.0f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true};
+    if (status == AMB_OK)
+        status = planet_normal_texture(context, s->height, &relief, &s->relief, error);
+    relief.strength = 2.2f;
+    if (status == AMB_OK)
+        status = planet_normal_texture(context, s->clouds, &relief, &s->cloud_relief, error);
+    if (status != AMB_OK) {
+        earth_unload(s);
+        return status;
+    }
+    *out = s;
+    return AMB_OK;
+}
+
+static const amb_camera_key earth_flight[] = {
+    {0.0f, {-0.35f, 0.45f, 2.95f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
+    {12.0f, {-2.2f, 0.3f, 1.9f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
+    {24.0f, {-1.28f, 0.42f, -0.35f}, {-0.35f, 0.62f, 1.0f}, {-0.5f, 0.85f, 0.0f}},
+    {36.0f, {0.4f, 0.55f, -2.7f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
+    {48.0f, {2.3f, 0.1f, 1.6f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
+    {60.0f, {-0.35f, 0.45f, 2.95f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
+};
+
+static amb_status earth_frame(const void *opaque, const amb_scene_job *job, amb_error *error)
+{
+    const earth_state *state = opaque;
+    const earth_params *p = job->params;
+    amb_canvas canvas;
+    amb_status status = canvas_begin(job, earth_aovs, EARTH_AOVS, p->planet.samples, &canvas, error);
+    if (status != AMB_OK)
+        return status;
+    earth_uniforms u = {.state = state, .params = p, .cloud_shell = 1.0f + p->cloud_height};
+    planet_view *view = &u.air.view;
+    *view = planet_view_at(&state->planet, &p->planet, job, &canvas, earth_flight,
+                           sizeof earth_flight / sizeof *earth_flight, 42.0f);
+    u.air.air = planet_atmosphere(&p->air, view->sun_rgb);
+    u.air.ground_gain = p->air.ground;
+    u.air.dome_gain = p->air.dome;
+
+    amb_draw stars = planet_background_draw(view, sizeof u);
+    status = amb_pass_draw(canvas.pass, &stars, error);
+    amb_draw ground = planet_shell_draw("ground", planet_vertex, earth_ground, view, sizeof u);
+    if (status == AMB_OK)
+        status = amb_pass_draw(canvas.pass, &ground, error);
+    view->shell = u.cloud_shell;
+    amb_draw clouds = planet_shell_draw("clouds", planet_vertex, earth_clouds, view, sizeof u);
+    clouds.blend[0] = AMB_BLEND_ALPHA;
+    clouds.depth_write_off = true;
+    clouds.targets_off = ~1u;
+    if (status == AMB_OK && p->clouds > 0.0f)
+        status = amb_pass_draw(canvas.pass, &clouds, error);
+    if (status == AMB_OK && p->show_air)
+        status = planet_air_draw(canvas.pass, &u.air, error);
+    return canvas_finish(job, earth_aovs, &canvas, status, error);
+}
+
+const amb_scene WIDE(amb_scene_earth) = {
+    .name = "earth",
+    .about = "day and night, oceans, relief, clouds and air",
+    .seconds = 60.0f,
+    .params = {earth_table, sizeof earth_table / sizeof *earth_table, sizeof(earth_params)},
+    .aovs = earth_aovs,
+    .aov_count = EARTH_AOVS,
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .load = earth_load,
+    .frame = earth_frame,
+    .unload = earth_unload,
+};

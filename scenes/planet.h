@@ -1,0 +1,129 @@
+/* What the planets share: a spheroid at the origin of its own frame, drawn by the rasterizer in shells (ground, clouds,
+ * air), the sky of stars behind, and their outputs. Lengths are in planet radii. planet_wide.h has the lanes part. */
+#ifndef AMB_SCENES_PLANET_H
+#define AMB_SCENES_PLANET_H
+
+#include "scenes/canvas.h"
+
+#include <ambiance/mesh.h>
+#include <ambiance/normal_map.h>
+#include <ambiance/texture.h>
+
+/* Outputs of every planet; a scene's own follow from PLANET_AOVS on. */
+enum { PLANET_POSITION, PLANET_NORMAL, PLANET_ALBEDO, PLANET_ID, PLANET_DEPTH, PLANET_AOVS };
+#define PLANET_AOV_ROWS                                                                                   \
+    {"position", 3, "world position, planet radii"}, {"normal", 3, "world normal, unit, bumps included"}, \
+        {"albedo", 3, "linear albedo"}, {"id", 1, "1 the planet, 2 its rings, 0 background"},             \
+    {                                                                                                     \
+        "depth", 1, "0 near plane ... 1 far plane"                                                        \
+    }
+
+/* Parameters of every planet; the first member of each planet's parameter struct. */
+typedef struct planet_params {
+    float sun_azimuth, sun_elevation; /* degrees, seen from the planet: 0 along +z, 90 along +x */
+    float turn, day;                  /* degrees at time 0; seconds a turn, 0: still */
+    float tilt;                       /* degrees, of the axis toward +x */
+    float exposure, stars;
+    int samples;
+} planet_params;
+#define PLANET_FIELD(type, name) offsetof(type, name)
+/* Rows for the table of a struct `type` whose first member is `planet`; defaults as given. */
+#define PLANET_PARAM_ROWS(type, azimuth, elevation, turn_at_0, seconds_a_turn, axis_tilt)                       \
+    {"sun_azimuth",                                                                                             \
+     AMB_PARAM_FLOAT,                                                                                           \
+     "degrees",                                                                                                 \
+     -360,                                                                                                      \
+     360,                                                                                                       \
+     {azimuth},                                                                                                 \
+     NULL,                                                                                                      \
+     offsetof(type, planet.sun_azimuth),                                                                        \
+     "where the sun is: 0 along +z, 90 along +x"},                                                              \
+        {"sun_elevation",                                                                                       \
+         AMB_PARAM_FLOAT,                                                                                       \
+         "degrees",                                                                                             \
+         -90,                                                                                                   \
+         90,                                                                                                    \
+         {elevation},                                                                                           \
+         NULL,                                                                                                  \
+         offsetof(type, planet.sun_elevation),                                                                  \
+         "its height over the plane of y = 0"},                                                                 \
+        {"turn",                                                                                                \
+         AMB_PARAM_FLOAT,                                                                                       \
+         "degrees",                                                                                             \
+         -360,                                                                                                  \
+         360,                                                                                                   \
+         {turn_at_0},                                                                                           \
+         NULL,                                                                                                  \
+         offsetof(type, planet.turn),                                                                           \
+         "turn of the planet about its axis at time 0"},                                                        \
+        {"day",                                                                                                 \
+         AMB_PARAM_FLOAT,                                                                                       \
+         "s",                                                                                                   \
+         0,                                                                                                     \
+         100000,                                                                                                \
+         {seconds_a_turn},                                                                                      \
+         NULL,                                                                                                  \
+         offsetof(type, planet.day),                                                                            \
+         "time of one turn; 0: it stands still"},                                                               \
+        {"tilt",                                                                                                \
+         AMB_PARAM_FLOAT,                                                                                       \
+         "degrees",                                                                                             \
+         -180,                                                                                                  \
+         180,                                                                                                   \
+         {axis_tilt},                                                                                           \
+         NULL,                                                                                                  \
+         offsetof(type, planet.tilt),                                                                           \
+         "of the axis toward +x"},                                                                              \
+        {"exposure",                                                                                            \
+         AMB_PARAM_FLOAT,                                                                                       \
+         "",                                                                                                    \
+         0,                                                                                                     \
+         100,                                                                                                   \
+         {1},                                                                                                   \
+         NULL,                                                                                                  \
+         offsetof(type, planet.exposure),                                                                       \
+         "factor on the sun's light"},                                                                          \
+        {"stars", AMB_PARAM_FLOAT, "", 0, 100, {1}, NULL, offsetof(type, planet.stars), "factor on the stars"}, \
+    {                                                                                                           \
+        "samples", AMB_PARAM_INT, "", 1, CANVAS_MAX_FACTOR, {2}, NULL, offsetof(type, planet.samples),          \
+            "samples along a pixel's side"                                                                      \
+    }
+
+/* How one frame sees a planet: the first member of every planet shader's uniforms. */
+typedef struct planet_view {
+    m4 world_to_clip;
+    v3 eye, ray_origin, ray_dx, ray_dy; /* primary rays of window coordinates */
+    v3 axis[3];                         /* the planet's own x, y (pole) and z axes in the world */
+    v3 scale;                           /* semi-axes along them */
+    float shell;                        /* factor on `scale` for this draw: 1 the ground, more for clouds and air */
+    v3 to_sun, sun_rgb;                 /* unit; radiance of white that faces the sun */
+    float sun_size, sun_glow;           /* of the disc: cosine of its radius (1: none), radiance relative to sun_rgb */
+    float star_gain;
+    float time;
+    const amb_mesh *sphere;
+    const amb_texture *stars;
+    int slot[CANVAS_MAX_AOVS];
+} planet_view;
+
+/* What every planet's state starts with. */
+typedef struct planet_state {
+    amb_mesh *sphere;
+    const amb_texture *stars;
+} planet_state;
+
+amb_status planet_load(amb_assets *assets, planet_state *state, amb_error *error);
+void planet_unload(planet_state *state);
+
+/* A normal map (RGBA8, coded, z out) from the first channel or the luminance of level 0 of a texture. */
+amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
+                                 const amb_normal_map_options *options, amb_texture **out, amb_error *error);
+
+/* The view of one frame; the camera flies `keys`, over and over from their last time on. */
+planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,
+                           const amb_canvas *canvas, const amb_camera_key *keys, size_t key_count,
+                           float vertical_fov_degrees);
+
+/* `time` folded into [0, period). */
+float planet_loop_time(double time, float period);
+
+#endif

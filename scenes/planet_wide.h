@@ -1,0 +1,172 @@
+/* The lanes part of the planets: vertex shader, the point seen on a shell, map look-ups, background. Included by the
+ * *_wide.c files of planets. */
+#ifndef AMB_SCENES_PLANET_WIDE_H
+#define AMB_SCENES_PLANET_WIDE_H
+
+#include "scenes/planet.h"
+#include "shade/normal_map.h"
+
+#include <ambiance/math.h>
+#include <ambiance/raster.h>
+
+typedef struct planet_varyings {
+    v3x world;
+} planet_varyings;
+
+/* Own frame → world, of a direction. */
+AMB_INLINE v3x planet_to_world(const planet_view *view, v3x own)
+{
+    v3x x = v3x_scale(v3x_splat(view->axis[0]), own.x), y = v3x_scale(v3x_splat(view->axis[1]), own.y);
+    return v3x_add(v3x_add(x, y), v3x_scale(v3x_splat(view->axis[2]), own.z));
+}
+AMB_INLINE v3x planet_to_own(const planet_view *view, v3x world)
+{
+    return (v3x){v3x_dot(world, v3x_splat(view->axis[0])), v3x_dot(world, v3x_splat(view->axis[1])),
+                 v3x_dot(world, v3x_splat(view->axis[2]))};
+}
+
+/* Draws view->sphere as the shell view->shell · view->scale. */
+AMB_INLINE void planet_vertex(const amb_vs_in *in, amb_vs_out *out)
+{
+    const planet_view *view = in->uniforms;
+    planet_varyings *v = out->varyings;
+    v3x unit = v3x_gather(view->sphere->position, in->vertex);
+    v3x own = v3x_mul(unit, v3x_splat(v3_scale(view->scale, view->shell)));
+    v->world = planet_to_world(view, own);
+    out->clip = m4_project_x(view->world_to_clip, v->world);
+}
+
+/* The point seen on a shell. */
+typedef struct planet_point {
+    v3x world, normal, to_eye; /* of the smooth spheroid; unit but `world` */
+    v3x east, south;           /* unit, world: along +u and +v of the maps */
+    v2x uv, uv_dx, uv_dy;      /* and their change to the next pixel; no seam at ±180° */
+} planet_point;
+
+/* u = 0.5 + atan2(x, -z)/2π, v = acos(y)/π of the unit direction d, with the analytic gradient for a change of d. */
+AMB_INLINE v2x planet_uv(v3x d)
+{
+    v2x uv = {0.5f + f_atan2(d.x, -d.z) * (0.5f * AMB_INV_PI),
+              f_acos(f_clamp(d.y, f_set(-1.0f), f_set(1.0f))) * AMB_INV_PI};
+    return uv;
+}
+AMB_INLINE v2x planet_uv_change(v3x d, v3x change)
+{
+    f32x across2 = f_max(d.x * d.x + d.z * d.z, f_set(1.0e-8f));
+    v2x uv = {(d.x * change.z - d.z * change.x) / across2 * (0.5f * AMB_INV_PI),
+              -change.y / f_sqrt(across2) * AMB_INV_PI};
+    return uv;
+}
+
+AMB_INLINE planet_point planet_point_of(const planet_view *view, v3x world)
+{
+    planet_point p;
+    v3 inverse = {1.0f / view->scale.x, 1.0f / view->scale.y, 1.0f / view->scale.z};
+    v3x d = v3x_normalize(v3x_mul(planet_to_own(view, world), v3x_splat(inverse)));
+    p.world = world;
+    p.normal = v3x_normalize(planet_to_world(view, v3x_mul(d, v3x_splat(inverse))));
+    p.to_eye = v3x_normalize(v3x_sub(v3x_splat(view->eye), world));
+    f32x across = f_sqrt(f_max(d.x * d.x + d.z * d.z, f_set(1.0e-12f)));
+    v3x east = {-d.z / across, f_set(0.0f), d.x / across};
+    p.east = planet_to_world(view, east);
+    p.south = v3x_normalize(v3x_cross(p.normal, p.east));
+    p.uv = planet_uv(d);
+#if AMB_LANES > 1
+    p.uv_dx = planet_uv_change(d, (v3x){f_ddx(d.x), f_ddx(d.y), f_ddx(d.z)});
+    p.uv_dy = planet_uv_change(d, (v3x){f_ddy(d.x), f_ddy(d.y), f_ddy(d.z)});
+#else
+    p.uv_dx = p.uv_dy = (v2x){0.0f, 0.0f};
+#endif
+    return p;
+}
+
+static const amb_sampler planet_sampler = {
+    .filter = AMB_TRILINEAR, .wrap = {AMB_REPEAT, AMB_CLAMP, AMB_CLAMP}, .max_anisotropy = 4};
+
+/* A map at the point, moved by `offset` in u and v. */
+AMB_INLINE v4x planet_map_at(const amb_texture *map, const planet_point *p, v2x offset)
+{
+    return amb_sample_2d_grad(map, &planet_sampler, v2x_add(p->uv, offset), p->uv_dx, p->uv_dy);
+}
+AMB_INLINE v4x planet_map(const amb_texture *map, const planet_point *p)
+{
+    return amb_sample_2d_grad(map, &planet_sampler, p->uv, p->uv_dx, p->uv_dy);
+}
+
+/* A coded tangent-space normal, brought to the world. */
+AMB_INLINE v3x planet_bumped(const planet_point *p, v4x texel, float strength)
+{
+    v3x m = normal_map_decode(v4x_xyz(texel), strength);
+    return normal_map_apply(m, p->east, p->south, p->normal);
+}
+
+AMB_INLINE void planet_put(const planet_view *view, amb_fs_out *out, int aov, v3x value)
+{
+    if (view->slot[aov] > 0)
+        out->color[view->slot[aov]] = v4x_of3(value, f_set(1.0f));
+}
+/* The outputs that every planet has. */
+AMB_INLINE void planet_put_surface(const planet_view *view, amb_fs_out *out, const planet_point *p, v3x normal,
+                                   v3x albedo, float id)
+{
+    planet_put(view, out, PLANET_POSITION, p->world);
+    planet_put(view, out, PLANET_NORMAL, normal);
+    planet_put(view, out, PLANET_ALBEDO, albedo);
+    planet_put(view, out, PLANET_ID, v3x_splat((v3){id, id, id}));
+}
+
+/* Stars by direction, and the sun's disc with a darkened limb. */
+AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
+{
+    const planet_view *view = in->uniforms;
+    v3x ray = v3x_add(v3x_splat(view->ray_origin),
+                      v3x_add(v3x_scale(v3x_splat(view->ray_dx), in->x), v3x_scale(v3x_splat(view->ray_dy), in->y)));
+    v3x d = v3x_normalize(ray);
+    planet_point p = {.uv = planet_uv(d)};
+#if AMB_LANES > 1
+    p.uv_dx = planet_uv_change(d, (v3x){f_ddx(d.x), f_ddx(d.y), f_ddx(d.z)});
+    p.uv_dy = planet_uv_change(d, (v3x){f_ddy(d.x), f_ddy(d.y), f_ddy(d.z)});
+#else
+    p.uv_dx = p.uv_dy = (v2x){0.0f, 0.0f};
+#endif
+    v3x light = v3x_scale(v4x_xyz(planet_map(view->stars, &p)), f_set(view->star_gain));
+    if (view->sun_size < 1.0f) {
+        f32x cosine = v3x_dot(d, v3x_splat(view->to_sun));
+        f32x depth = f_saturate((cosine - view->sun_size) * (1.0f / (1.0f - view->sun_size)));
+        f32x disc = f_sel(cosine > view->sun_size, 0.4f + 0.6f * f_sqrt(depth), f_set(0.0f));
+        light = v3x_add(light, v3x_scale(v3x_splat(v3_scale(view->sun_rgb, view->sun_glow)), disc));
+    }
+    out->color[0] = v4x_of3(light, f_set(1.0f));
+}
+
+/* A full-screen draw of the background; only colour is written. */
+AMB_INLINE amb_draw planet_background_draw(const planet_view *view, size_t uniforms_size)
+{
+    return (amb_draw){.label = "stars",
+                      .lanes = AMB_LANES,
+                      .fragment = planet_background,
+                      .uniforms = view,
+                      .uniforms_size = uniforms_size,
+                      .depth_compare = AMB_ALWAYS,
+                      .depth_write_off = true,
+                      .targets_off = ~1u};
+}
+
+/* A draw of one shell; the caller sets shaders' uniforms, blending and what differs. */
+AMB_INLINE amb_draw planet_shell_draw(const char *label, amb_vertex_shader vertex, amb_fragment_shader fragment,
+                                      const planet_view *view, size_t uniforms_size)
+{
+    return (amb_draw){.label = label,
+                      .lanes = AMB_LANES,
+                      .vertex = vertex,
+                      .fragment = fragment,
+                      .uniforms = view,
+                      .uniforms_size = uniforms_size,
+                      .varying_floats = sizeof(planet_varyings) / sizeof(f32x),
+                      .indices = view->sphere->index,
+                      .count = view->sphere->triangle_count * 3,
+                      .vertex_count = view->sphere->vertex_count,
+                      .cull = AMB_CULL_BACK};
+}
+
+#endif
