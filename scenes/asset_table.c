@@ -16,6 +16,14 @@
         .name = NAME "/irradiance", .about = "irradiance / pi of " NAME, .kind = ASSET_IRRADIANCE, .version = VERSION \
     }
 
+/* A latitude-longitude map, or rings by radius. */
+#define MAP(NAME, ABOUT, SRGB, VERSION, MAKE)                                                               \
+    {                                                                                                       \
+        .name = NAME, .about = ABOUT, .kind = ASSET_TEXTURE, .srgb = SRGB,                                  \
+        .user_file = {NAME ".png", NAME ".jpg", NAME ".jpeg", NAME ".exr", NAME ".hdr"}, .pack_file = NULL, \
+        .version = VERSION, .make_texture = MAKE                                                            \
+    }
+
 const asset_row asset_table[] = {
     ENVIRONMENT("env/outdoor", "outdoor light: an HDR cube map or panorama", 1, amb_builtin_sky),
     ENVIRONMENT("env/studio", "indoor light: an HDR cube map or panorama", 1, amb_builtin_studio),
@@ -42,5 +50,24 @@ const asset_row asset_table[] = {
                    "lucy/lucy100k.obj"},
      .version = 1,
      .make_mesh = amb_builtin_statue},
+    /* Maps of the solar system. */
+    MAP("earth/color", "the Earth by day", true, 1, amb_builtin_earth_colour),
+    MAP("earth/night", "its lights at night", true, 1, amb_builtin_earth_night),
+    MAP("earth/water", "1 on water, 0 on land", false, 1, amb_builtin_earth_water),
+    MAP("earth/height", "its height", false, 1, amb_builtin_earth_height),
+    MAP("earth/clouds", "cover of its clouds", false, 1, amb_builtin_earth_clouds),
+    MAP("venus/color", "the clouds of Venus", true, 1, amb_builtin_venus_colour),
+    MAP("mars/color", "Mars", true, 1, amb_builtin_mars_colour),
+    MAP("mars/height", "its height", false, 1, amb_builtin_mars_height),
+    MAP("jupiter/color", "Jupiter", true, 1, amb_builtin_jupiter_colour),
+    MAP("saturn/color", "Saturn", true, 1, amb_builtin_saturn_colour),
+    MAP("saturn/rings", "tint and opacity of its rings by radius", true, 1, amb_builtin_saturn_rings),
+    MAP("saturn/scatter", "back-, forward- and unlit-scattered light of its rings", false, 1,
+        amb_builtin_saturn_ring_scatter),
+    MAP("uranus/color", "Uranus", true, 1, amb_builtin_uranus_colour),
+    MAP("neptune/color", "Neptune", true, 1, amb_builtin_neptune_colour),
+    MAP("pluto/color", "Pluto", true, 1, amb_builtin_pluto_colour),
+    MAP("pluto/gloss", "where its ice shines", false, 1, amb_builtin_pluto_gloss),
+    MAP("sun/color", "the surface of the sun", true, 1, amb_builtin_sun_colour),
 };
 const int asset_table_count = sizeof asset_table / sizeof *asset_table;

@@ -20,7 +20,7 @@ static const amb_param earth_table[] = {
     PLANET_PARAM_ROWS(earth_params, -62, 14, 200, 240, 23.4f),
     PLANET_AIR_ROWS(earth_params, 0.020f, 0.0042f, 0.046f, 0.108f, 0.265f, 0.035f, 0.78f, 1, 1, 1, 1, 1.35f),
     {"wrap", AMB_PARAM_FLOAT, "", 0, 1, {0.06f}, NULL, FIELD(wrap), "w of the ground's wrapped diffuse light"},
-    {"night", AMB_PARAM_FLOAT, "", 0, 20, {0.9f}, NULL, FIELD(night), "brightness of the cities at night"},
+    {"night", AMB_PARAM_FLOAT, "", 0, 20, {2.2f}, NULL, FIELD(night), "brightness of the cities at night"},
     {"gloss", AMB_PARAM_FLOAT, "", 0, 10, {0.55f}, NULL, FIELD(gloss), "strength of the oceans' highlight"},
     {"gloss_exponent", AMB_PARAM_FLOAT, "", 1, 1000, {42}, NULL, FIELD(gloss_exponent), "its exponent"},
     {"bump", AMB_PARAM_FLOAT, "", 0, 10, {1.0f}, NULL, FIELD(bump), "strength of the relief; 0: none"},

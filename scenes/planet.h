@@ -83,7 +83,7 @@ typedef struct planet_params {
          NULL,                                                                                                  \
          offsetof(type, planet.exposure),                                                                       \
          "factor on the sun's light"},                                                                          \
-        {"stars", AMB_PARAM_FLOAT, "", 0, 100, {1}, NULL, offsetof(type, planet.stars), "factor on the stars"}, \
+        {"stars", AMB_PARAM_FLOAT, "", 0, 100, {0.4f}, NULL, offsetof(type, planet.stars), "factor on the stars"}, \
     {                                                                                                           \
         "samples", AMB_PARAM_INT, "", 1, CANVAS_MAX_FACTOR, {2}, NULL, offsetof(type, planet.samples),          \
             "samples along a pixel's side"                                                                      \

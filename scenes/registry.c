@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define SCENES(X) \
+    X(earth)      \
     X(lucy)
 
 #if defined(__x86_64__)
