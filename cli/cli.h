@@ -89,6 +89,10 @@ double progress_stage(progress *p, const char *format, ...) __attribute__((forma
 /* Clears the line; returns the seconds since progress_start. */
 double progress_end(progress *p);
 
+/* Between the two, SIGINT, SIGTERM and SIGHUP wait: an interrupted write would leave its temporary file behind. */
+void hold_signals(void);
+void release_signals(void); /* what came meanwhile now ends the program as it always would */
+
 /* ---- files (files.c) --------------------------------------------------------------------------------------------- */
 
 typedef enum file_kind { FILE_EXR, FILE_PNG, FILE_JPEG, FILE_HDR, FILE_KTX, FILE_MESH } file_kind;

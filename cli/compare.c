@@ -181,6 +181,7 @@ static int write_difference(const request *r, const amb_frame *a, const amb_fram
     if (amb_compare_difference(a, b, r->options.layer, &frame, &error) != AMB_OK)
         return fail_file(&error);
     amb_status status;
+    hold_signals();
     if (is_png(r->diff)) {
         amb_image picture = *amb_frame_layer(frame, layer);
         picture.channels = picture.channels == 4 ? 3 : picture.channels == 2 ? 1 : picture.channels; /* no alpha */
@@ -189,6 +190,7 @@ static int write_difference(const request *r, const amb_frame *a, const amb_fram
     } else {
         status = amb_write_exr(frame, r->diff, AMB_FLOAT, &error);
     }
+    release_signals();
     amb_frame_close(&frame);
     return status == AMB_OK ? 0 : fail_file(&error);
 }

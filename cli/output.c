@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,4 +94,30 @@ double progress_end(progress *p)
         fputs("\r\033[K", stderr);
     p->is_shown = false;
     return now() - p->started;
+}
+
+static const int held[] = {SIGINT, SIGTERM, SIGHUP};
+enum { HELD_COUNT = sizeof held / sizeof *held };
+static struct sigaction before[HELD_COUNT];
+static volatile sig_atomic_t came;
+
+static void note_signal(int signal) { came = signal; }
+
+void hold_signals(void)
+{
+    struct sigaction wait = {.sa_handler = note_signal, .sa_flags = SA_RESTART};
+    came = 0;
+    for (int i = 0; i < HELD_COUNT; i++) {
+        sigaction(held[i], NULL, &before[i]);
+        if (before[i].sa_handler != SIG_IGN)
+            sigaction(held[i], &wait, NULL);
+    }
+}
+
+void release_signals(void)
+{
+    for (int i = 0; i < HELD_COUNT; i++)
+        sigaction(held[i], &before[i], NULL);
+    if (came)
+        raise(came);
 }

@@ -330,6 +330,7 @@ static int write_output(const request *r, const char *path, const amb_frame *fra
 {
     amb_error error;
     amb_status status;
+    hold_signals();
     if (is_png(path)) {
         amb_image opaque = *frame->layer[0].image; /* planar: the picture without its alpha */
         opaque.channels = 3;
@@ -337,6 +338,7 @@ static int write_output(const request *r, const char *path, const amb_frame *fra
     } else {
         status = amb_write_exr(frame, path, r->pixel_type, &error);
     }
+    release_signals();
     return status == AMB_OK ? 0 : fail_file(&error);
 }
 

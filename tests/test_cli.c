@@ -249,6 +249,22 @@ static void killed_in_mid_write(void **state)
     assert_string_equal(r.out, "killed in mid-write\n");
 }
 
+/* An interrupt in mid-write waits until the file is whole, and leaves nothing behind. */
+static void interrupted_in_mid_write(void **state)
+{
+    (void)state;
+    needs_scene();
+    result r = run("seen=0; for i in 1 2 3; do rm -f int.exr\n"
+                   "$P render $S --assets builtin --size 640x480 --quiet -o int.exr & p=$!\n"
+                   "while kill -0 $p 2>/dev/null; do\n"
+                   "  if ls -A | grep -q '^.int.exr.*ambiance-tmp$'; then seen=$((seen + 1)); break; fi\n"
+                   "done\n"
+                   "kill -TERM $p 2>/dev/null; wait $p 2>/dev/null\n"
+                   "cmp -s int.exr whole.exr || echo not the whole file\n"
+                   "done; ls -A | grep '^.int.exr'; [ $seen -gt 0 ] && echo interrupted in mid-write");
+    assert_string_equal(r.out, "interrupted in mid-write\n");
+}
+
 static void same_bytes_whatever_the_machine_does(void **state)
 {
     (void)state;
@@ -409,6 +425,7 @@ int main(void)
         cmocka_unit_test(render_outputs),
         cmocka_unit_test(an_old_file_survives_a_failed_write),
         cmocka_unit_test(killed_in_mid_write),
+        cmocka_unit_test(interrupted_in_mid_write),
         cmocka_unit_test(same_bytes_whatever_the_machine_does),
         cmocka_unit_test(files_and_formats),
         cmocka_unit_test(comparisons),

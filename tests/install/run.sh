@@ -54,7 +54,25 @@ done
 if command -v man >/dev/null && command -v groff >/dev/null; then
     [ -z "$(man --warnings -l "$place/usr/share/man/man1/ambiance.1" 2>&1 >/dev/null)" ] || fail "the man page has warnings"
 fi
-bash -n "$place/usr/share/bash-completion/completions/ambiance"
+
+# Completion: of a command, an option, a value, and of names that the program lists.
+completes() { # expected word, then the words of the line, the last one being completed
+    expected=$1
+    shift
+    PATH="$place/usr/bin:$PATH" bash -c '. "$0"; compopt() { :; }
+        COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _ambiance; printf "%s\n" "${COMPREPLY[@]}"' \
+        "$place/usr/share/bash-completion/completions/ambiance" "$@" | grep -qxF -- "$expected" ||
+        fail "completion: '$*' does not offer '$expected'"
+}
+if command -v bash >/dev/null; then
+    completes render ambiance re
+    completes --tolerance ambiance compare --to
+    completes v3 ambiance render --isa v
+    completes bloom ambiance render x --post bl
+    completes display ambiance list --post dis
+    completes lucy ambiance render lu
+    completes material= ambiance render lucy --set mat
+fi
 
 $MAKE --no-print-directory -s CC="$CC" BUILD="$BUILD" PREFIX="$place/usr" uninstall >/dev/null
 left=$(find "$place/usr" -type f -o -type l)
