@@ -7,7 +7,6 @@
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <strings.h>
 
 typedef struct text { /* a cursor over lines and words of bytes that need not end in a zero */
     const uint8_t *at, *end;
@@ -68,13 +67,10 @@ static size_t skip_digits(word w, size_t i)
     return i;
 }
 
-/* Decimal, with or without fraction and exponent, or any spelling of nan and inf (refused later, by vertex). */
+/* Decimal, with or without fraction and exponent; not nan or inf. */
 static bool is_number(word w)
 {
     size_t sign = w.length && (w.at[0] == '-' || w.at[0] == '+') ? 1 : 0;
-    if (w.length >= sign + 3 && (strncasecmp((const char *)w.at + sign, "nan", 3) == 0 ||
-                                 strncasecmp((const char *)w.at + sign, "inf", 3) == 0))
-        return w.length == sign + 3;
     size_t i = skip_digits(w, sign), digits = i - sign;
     if (i < w.length && w.at[i] == '.') {
         size_t fraction = skip_digits(w, i + 1);
@@ -256,9 +252,11 @@ static amb_status check_ply(const uint8_t *data, size_t bytes, const char *name,
             }
         }
         if (i < count)
-            status = amb_fail(error, AMB_ERROR_FORMAT,
-                              "%s: truncated or damaged PLY: instance %llu of the %llu of element %d", name,
-                              (unsigned long long)i + 1, (unsigned long long)count, e + 1);
+            status = amb_fail(
+                error, AMB_ERROR_FORMAT,
+                "%s: truncated or damaged PLY: element %d, instance %llu of %llu; numbers must be complete and "
+                "finite",
+                name, e + 1, (unsigned long long)i + 1, (unsigned long long)count);
     }
     return status;
 }
@@ -326,8 +324,7 @@ static amb_status check_obj(const uint8_t *data, size_t bytes, const char *name,
         if (!is_good)
             return amb_fail(
                 error, AMB_ERROR_FORMAT,
-                "%s: bad OBJ line '%.*s': a number is missing or no number, or an index is outside 1 to the "
-                "vertices there are",
+                "%s: bad OBJ line '%.*s': its numbers must be complete and finite, its indices must name vertices",
                 name, (int)(line.end - start < 40 ? line.end - start : 40), (const char *)start);
     }
     return AMB_OK;
