@@ -53,6 +53,8 @@ AMB_INLINE v3x bright(const void *user, v3x rgb)
     f32x zero = f_set(0.0f), limit = f_set(GLOW_LIMIT);
     rgb = (v3x){f_clamp(rgb.x, zero, limit), f_clamp(rgb.y, zero, limit), f_clamp(rgb.z, zero, limit)};
     f32x largest = f_max(rgb.x, f_max(rgb.y, rgb.z));
+    if (!m_any(largest > p->threshold))
+        return (v3x){zero, zero, zero}; /* what the division would give */
     f32x excess = f_max(largest - p->threshold, zero) / f_max(largest, f_set(1e-20f));
     return v3x_scale(rgb, excess);
 }
@@ -75,13 +77,18 @@ static void bloom_span(const amb_post_job *job, const void *state, const amb_pos
     float cells[3][GLOW_SPAN_CELLS];
     amb_glow_rows(g, span, p->intensity, cells);
     glow_lanes lanes[2] = {glow_lanes_at(g, 0), glow_lanes_at(g, AMB_LANES)};
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < span->count; i += AMB_LANES) {
-            f32x add = glow_at(g, cells[c], i, lanes[i / AMB_LANES & 1]);
-            f_store(span->rgb[c] + i, f_load(span->rgb[c] + i) + add);
-            if (s->blurred)
-                f_store(amb_image_row(s->blurred, c, span->y) + span->x + i, add);
-        }
+    for (int block = 0; block < span->count; block += GLOW_BLOCK) {
+        if (!s->blurred && glow_is_dark(g, cells, block))
+            continue; /* most of most pictures: neither read nor written */
+        int end = block + GLOW_BLOCK < span->count ? block + GLOW_BLOCK : span->count;
+        for (int c = 0; c < 3; c++)
+            for (int i = block; i < end; i += AMB_LANES) {
+                f32x add = glow_at(g, cells[c], i, lanes[i / AMB_LANES & 1]);
+                f_store(span->rgb[c] + i, f_load(span->rgb[c] + i) + add);
+                if (s->blurred)
+                    f_store(amb_image_row(s->blurred, c, span->y) + span->x + i, add);
+            }
+    }
 }
 
 const amb_post_pass WIDE(amb_post_bloom) = {

@@ -14,7 +14,8 @@
 
 #define GLOW_TAPS 8
 #define GLOW_LEFT 16        /* cells kept left of a row: copies of its first */
-#define GLOW_RIGHT 32       /* and right of it: copies of its last, and alignment */
+#define GLOW_RIGHT 64       /* and right of it: copies of its last, and alignment */
+#define GLOW_BLOCK 64       /* pixels that may be left out together where nothing glows */
 #define GLOW_LIMIT 65504.0f /* the largest half float: what an RGBA16F target would hold */
 
 typedef struct glow {
@@ -48,7 +49,7 @@ void amb_glow_finish(const amb_post_job *job, const glow *g);
 AMB_INLINE size_t glow_sum_floats(const glow *g) { return ((size_t)g->width + 15) / 16 * 16 * (size_t)g->reduce; }
 
 /* The span's cells, from that left of its first pixel's on, blended between rows and multiplied by scale:
- * out[c][0 … count/reduce + 2). */
+ * out[c][0 … count/reduce + 2), and then some more of the row. */
 #define GLOW_SPAN_CELLS (AMB_POST_SPAN / 2 + 64)
 #define amb_glow_rows WIDE(amb_glow_rows)
 void amb_glow_rows(const glow *g, const amb_post_span *span, float scale, float (*out)[GLOW_SPAN_CELLS]);
@@ -119,6 +120,18 @@ AMB_INLINE glow_lanes glow_lanes_at(const glow *g, int pixel)
     i32x cell = x >> shift;
     f32x step = f_set(1.0f / (float)g->reduce);
     return (glow_lanes){cell - (((pixel & 7) + half) >> shift), (i_to_f(x - (cell << shift)) + 0.5f) * step};
+}
+
+/* Is there no light at all near the block that begins at the span's `pixel`? A whole number of every group of lanes is
+ * looked at, the same cells at any width. */
+AMB_INLINE bool glow_is_dark(const glow *g, float (*cells)[GLOW_SPAN_CELLS], int pixel)
+{
+    int first = pixel / g->reduce, count = (GLOW_BLOCK / g->reduce + 2 + 15) / 16 * 16;
+    maskx lit = m_set(false);
+    for (int c = 0; c < 3; c++)
+        for (int i = first; i < first + count; i += AMB_LANES)
+            lit |= f_load(cells[c] + i) != 0.0f;
+    return !m_any(lit);
 }
 
 /* The glow at the span's pixels from `pixel` (a multiple of the lanes) on; cells: a channel of amb_glow_rows. */

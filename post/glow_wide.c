@@ -175,7 +175,7 @@ void amb_glow_rows(const glow *g, const amb_post_span *span, float scale, float 
     int below = above + 1 < g->height ? above + 1 : g->height - 1;
     above = above < 0 ? 0 : above;
     ptrdiff_t first = span->x / g->reduce - 1;
-    int count = span->count / g->reduce + 2;
+    int count = (span->count / g->reduce + 2 + 31) / 16 * 16; /* see glow_is_dark */
     for (int c = 0; c < 3; c++) {
         const float *a = g->plane[c] + (size_t)above * g->stride + first;
         const float *b = g->plane[c] + (size_t)below * g->stride + first;
