@@ -2,21 +2,7 @@
 #ifndef AMB_POST_ENCODE_H
 #define AMB_POST_ENCODE_H
 
-#include <ambiance/wide.h>
-
-/* table[index] of 16 floats, lane by lane; index 0…15. */
-AMB_INLINE f32x f_table16(const float *table, i32x index)
-{
-#if AMB_X86 && AMB_LANES == 16
-    return (f32x)_mm512_permutexvar_ps((__m512i)index, (__m512)f_load(table));
-#elif AMB_X86 && AMB_LANES == 8
-    f32x low = (f32x)_mm256_permutevar8x32_ps((__m256)f_load(table), (__m256i)index);
-    f32x high = (f32x)_mm256_permutevar8x32_ps((__m256)f_load(table + 8), (__m256i)index);
-    return f_sel(index > 7, high, low);
-#else
-    return f_gather(table, index);
-#endif
-}
+#include "post/lanes.h"
 
 typedef struct encode_power {
     float octave[16]; /* 2^(power·(i - 15)) */

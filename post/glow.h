@@ -8,6 +8,7 @@
 #ifndef AMB_POST_GLOW_H
 #define AMB_POST_GLOW_H
 
+#include "post/lanes.h"
 #include "post/scratch.h"
 
 #include <ambiance/vec.h>
@@ -88,23 +89,6 @@ AMB_INLINE void glow_collect(const glow *g, const amb_image *color, int y0, int 
 }
 
 /* ---- bilinear up-sampling ---------------------------------------------------------------------------------------- */
-
-/* Lane i of the result is lane index[i] of a. */
-AMB_INLINE f32x f_permute(f32x a, i32x index)
-{
-#if AMB_X86 && AMB_LANES == 16
-    return (f32x)_mm512_permutexvar_ps((__m512i)index, (__m512)a);
-#elif AMB_X86 && AMB_LANES == 8
-    return (f32x)_mm256_permutevar8x32_ps((__m256)a, (__m256i)index);
-#elif AMB_X86 && AMB_LANES == 4
-    return (f32x)_mm_shuffle_epi8((__m128i)a, (__m128i)(index * 0x04040404 + 0x03020100));
-#else
-    f32x r = a;
-    for (int i = 0; i < AMB_LANES; i++)
-        r = f_with_lane(r, i, f_lane(a, i_lane(index, i)));
-    return r;
-#endif
-}
 
 /* Where the pixels of a group of lanes lie among the cells: constant along a row, but alternating when a group is
  * narrower than a cell. */
