@@ -12,6 +12,25 @@ AMB_DECLARE_WIDE(void, raster_vertices, (const amb_pass *pass, raster_chunk *chu
 AMB_DECLARE_WIDE(void, raster_setup, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_tile, (const amb_pass *pass, int tile, raster_scratch *scratch, int thread));
 
+/* For every set of wanted quads of a block and every slot to begin at: which lane each lane takes. */
+static int32_t *make_packing(uint32_t lanes)
+{
+    uint32_t quads = lanes / 4;
+    int32_t *packing = calloc((size_t)lanes * quads << quads, sizeof *packing);
+    for (uint32_t wanted = 0; packing && wanted < 1u << quads; wanted++)
+        for (uint32_t first = 0; first < quads; first++) {
+            int32_t *entry = packing + (size_t)(wanted * quads + first) * lanes;
+            uint32_t slot = first;
+            for (uint32_t quad = 0; quad < quads; quad++)
+                if (wanted >> quad & 1u) {
+                    for (uint32_t k = 0; k < 4 && slot < quads; k++)
+                        entry[slot * 4 + k] = (int32_t)(quad * 4 + k);
+                    slot++;
+                }
+        }
+    return packing;
+}
+
 static bool make_scratch(const amb_pass *pass, raster_scratch *s)
 {
     const size_t vertices = RASTER_CHUNK_VERTICES + 16, triangles = RASTER_CHUNK_TRIANGLES + 16; /* lanes of padding */
@@ -23,8 +42,10 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
     s->code = malloc(vertices * sizeof *s->code);
     s->corner[0] = malloc(4 * triangles * sizeof *s->corner[0]);
     s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
-    s->tile = aligned_alloc(64, side * side * (size_t)pass->planes * sizeof *s->tile);
-    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner[0] || !s->group || !s->tile)
+    s->tile = aligned_alloc(64, (side * side + 16) * (size_t)pass->planes * sizeof *s->tile);
+    s->packing = make_packing((uint32_t)amb_context_isa(pass->context));
+    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner[0] || !s->group || !s->tile ||
+        !s->packing)
         return false;
     s->clip_y = s->clip_x + vertices;
     s->clip_z = s->clip_y + vertices;
@@ -140,7 +161,7 @@ static bool run_draws(amb_pass *pass)
     size_t bytes = 0;
     for (size_t i = 0; i < pass->draw_count; i++) {
         const raster_draw *draw = &pass->draw[i];
-        uint32_t stride = (2 + (uint32_t)draw->state.varying_floats + 3) & ~3u;
+        uint32_t stride = (RASTER_VERTEX_WORDS + (uint32_t)draw->state.varying_floats + 3) & ~3u;
         uint64_t first = 0;
         if ((draw->state.vertex && draw->triangles == 0) || draw->x0 >= draw->x1 || draw->y0 >= draw->y1)
             continue;

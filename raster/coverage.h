@@ -38,8 +38,8 @@ static inline raster_box box_in_tile(const raster_tile *tile, uint32_t low, uint
 /* ---- 32 bits ---------------------------------------------------------------------------------------------------- */
 
 /* Every lane of a block; x, y: its first pixel, from the box's. */
-static inline void test_block(const raster_tile *tile, raster_shading *s, const raster_edge e[3], const i32x step[3],
-                              raster_box box, int bx, int by, bool full)
+static inline void test_block(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_edge e[3],
+                              const i32x step[3], raster_box box, int bx, int by, bool full)
 {
     i32x k[3];
     f32x weight[3];
@@ -51,7 +51,7 @@ static inline void test_block(const raster_tile *tile, raster_shading *s, const 
         return;
     for (int i = 0; i < 3; i++)
         weight[i] = i_to_f(k[i]) + e[i].bias;
-    fragment_triangle(tile, s, bx, by, cover, weight);
+    fragment_triangle(tile, s, queue, bx, by, cover, weight);
 }
 
 /* AMB_LANES blocks of a row at once: which ones may be covered, which ones are covered wholly? */
@@ -70,7 +70,8 @@ static inline void test_row(const raster_edge e[3], raster_box box, int bx, int 
     *full = m_bits(all);
 }
 
-static void cover_32(const raster_tile *tile, raster_shading *s, const raster_edge e[3], raster_box box)
+static void cover_32(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_edge e[3],
+                     raster_box box)
 {
     i32x step[3];
     for (int i = 0; i < 3; i++)
@@ -78,7 +79,7 @@ static void cover_32(const raster_tile *tile, raster_shading *s, const raster_ed
     if ((box.x1 - box.x0 + 1) * (box.y1 - box.y0 + 1) <= 4) {
         for (int by = box.y0; by <= box.y1; by++)
             for (int bx = box.x0; bx <= box.x1; bx++)
-                test_block(tile, s, e, step, box, bx, by, false);
+                test_block(tile, s, queue, e, step, box, bx, by, false);
         return;
     }
     for (int by = box.y0; by <= box.y1; by++)
@@ -88,14 +89,15 @@ static void cover_32(const raster_tile *tile, raster_shading *s, const raster_ed
             test_row(e, box, bx, by, &touched, &full);
             for (touched &= (uint32_t)((2ull << last) - 1u); touched != 0; touched &= touched - 1) {
                 int n = __builtin_ctz(touched);
-                test_block(tile, s, e, step, box, bx + n, by, (full >> n & 1u) != 0);
+                test_block(tile, s, queue, e, step, box, bx + n, by, (full >> n & 1u) != 0);
             }
         }
 }
 
 /* ---- more than 32 bits: doubles hold the edge functions exactly ------------------------------------------------- */
 
-static void cover_64(const raster_tile *tile, raster_shading *s, const raster_edge e[3], raster_box box)
+static void cover_64(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_edge e[3],
+                     raster_box box)
 {
     for (int by = box.y0; by <= box.y1; by++)
         for (int bx = box.x0; bx <= box.x1; bx++) {
@@ -116,7 +118,7 @@ static void cover_64(const raster_tile *tile, raster_shading *s, const raster_ed
             if (cover == 0)
                 continue;
             const f32x w[3] = {f_load(weight[0]), f_load(weight[1]), f_load(weight[2])};
-            fragment_triangle(tile, s, bx, by, m_from_bits(cover), w);
+            fragment_triangle(tile, s, queue, bx, by, m_from_bits(cover), w);
         }
 }
 
@@ -139,7 +141,7 @@ static inline bool fits_32_bits(const int32_t x[3], const int32_t y[3], const ra
 }
 
 /* A triangle of any size. */
-static void play_large(const raster_tile *tile, raster_shading *s, uint32_t low, uint32_t high)
+static void play_large(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low, uint32_t high)
 {
     const raster_chunk *chunk = s->chunk;
     raster_box box = box_in_tile(tile, low, high);
@@ -166,9 +168,9 @@ static void play_large(const raster_tile *tile, raster_shading *s, uint32_t low,
     int64_t area = (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
     s->inverse_area = 256.0f / (float)area;
     if (fits_32_bits(x, y, e))
-        cover_32(tile, s, e, box);
+        cover_32(tile, s, queue, e, box);
     else
-        cover_64(tile, s, e, box);
+        cover_64(tile, s, queue, e, box);
 }
 
 /* ---- AMB_LANES triangles at once --------------------------------------------------------------------------------- */

@@ -1,5 +1,9 @@
-/* One block of AMB_LANES pixels: early tests, interpolation, the fragment shader, and what output.h does after it. Part
- * of tile_wide.c, which finds the covered blocks. */
+/* One group of AMB_LANES pixels: early tests, interpolation, the fragment shader, and what output.h does after it. Part
+ * of tile_wide.c, which finds the covered blocks.
+ *
+ * A block whose quads are all live is shaded as it is. Of others the live quads wait in a queue until quads of further
+ * triangles fill the lanes: small triangles would waste most of them otherwise. A quad keeps its own helper lanes, so
+ * derivatives, and bits, do not depend on the packing. */
 #ifndef AMBIANCE_RASTER_FRAGMENT_H
 #define AMBIANCE_RASTER_FRAGMENT_H
 
@@ -17,7 +21,6 @@ typedef struct raster_shading {
     float z0, dz1, dz2;
     float inverse_w[3]; /* scaled by a power of two so that the largest is in [1, 2) */
     float bias;         /* of depth */
-    bool affine;        /* all w equal: perspective-correct weights are the screen's */
     bool attributes;    /* base and delta are filled */
     float base[AMB_MAX_VARYINGS + 16], delta1[AMB_MAX_VARYINGS + 16], delta2[AMB_MAX_VARYINGS + 16];
 } raster_shading;
@@ -59,7 +62,6 @@ static inline void prepare_shading(raster_shading *s)
     s->dz1 = v[1]->z - v[0]->z;
     s->dz2 = v[2]->z - v[0]->z;
     float w0 = v[0]->inverse_w, w1 = v[1]->inverse_w, w2 = v[2]->inverse_w;
-    s->affine = w0 == w1 && w1 == w2;
     float most = amb_s_max(w0, amb_s_max(w1, w2)), scale;
     uint32_t bits;
     memcpy(&bits, &most, sizeof bits);
@@ -83,11 +85,11 @@ static inline bool tests_late(const amb_draw *draw)
 }
 
 /* Runs the fragment shader and everything after it on the lanes of in->live. */
-static inline void shade_block(const raster_tile *tile, const amb_draw *draw, float *block, amb_fs_in *in, f32x depth,
-                               bool front, bool late)
+static inline void shade_group(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
+                               bool late, bool packed)
 {
     amb_fs_out out;
-    out.depth = depth;
+    out.depth = in->depth;
     out.live = in->live;
     for (int i = 0; i < tile->pass->target_count; i++)
         out.color[i] = (v4x){0};
@@ -95,36 +97,164 @@ static inline void shade_block(const raster_tile *tile, const amb_draw *draw, fl
         out.color[1] = (v4x){0}; /* may be a second source of blending */
     draw->fragment(in, &out);
     maskx live = in->live & out.live;
-    if (draw->writes_depth)
-        depth = f_saturate(out.depth);
+    f32x depth = draw->writes_depth ? f_saturate(out.depth) : in->depth;
     tile->stats->blocks_shaded++;
     tile->stats->fragments_shaded += (uint64_t)__builtin_popcount(m_bits(in->live));
     if (late || draw->stencil.on)
-        live = update_depth_stencil(tile, draw, block, front, depth, live);
+        live = update_depth_stencil(tile, draw, at, in->front, depth, live, packed);
     else if (!draw->depth_write_off)
-        f_store(block, f_sel(live, depth, f_load(block)));
+        store_plane(at, 0, depth, live, packed);
     if (m_any(live))
-        store_colors(tile, draw, block, &out, live);
+        store_colors(tile, draw, at, &out, live, packed);
 }
 
 /* Gives the covered lanes of a block, minus those that fail an early test. */
-static inline maskx live_lanes(const raster_tile *tile, const amb_draw *draw, float *block, int bx, int by, maskx cover,
-                               f32x depth, bool front, bool late)
+static inline maskx live_lanes(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx covered,
+                               f32x depth, maskx front, bool late)
 {
-    maskx live = cover & inside_clip(tile, bx, by);
     if (!draw->fragment) {
-        if (m_any(live))
-            update_depth_stencil(tile, draw, block, front, depth, live);
+        if (m_any(covered))
+            update_depth_stencil(tile, draw, at, front, depth, covered, false);
         return m_set(false);
     }
-    return late ? live : live & output_tests(tile, draw, block, front, depth);
+    return late ? covered : covered & output_tests(tile, draw, at, front, depth);
 }
 
-static inline void block_position(const raster_tile *tile, int bx, int by, amb_fs_in *in)
+/* Window coordinates of pixels packed as x | y << 16. */
+static inline void set_position(amb_fs_in *in, i32x position)
 {
-    in->x = i_to_f(i_set(tile->x0 + bx * AMB_BLOCK_W) + i_block_x()) + 0.5f;
-    in->y = i_to_f(i_set(tile->y0 + by * AMB_BLOCK_H) + i_block_y()) + 0.5f;
+    in->x = i_to_f(position & 0xffff) + 0.5f;
+    in->y = i_to_f(u_as_i(i_as_u(position) >> 16)) + 0.5f;
 }
+
+static inline i32x block_position(const raster_tile *tile, int bx, int by)
+{
+    return (i_set(tile->x0 + bx * AMB_BLOCK_W) + i_block_x()) |
+           ((i_set(tile->y0 + by * AMB_BLOCK_H) + i_block_y()) << 16);
+}
+
+/* ---- the queue of quads ----------------------------------------------------------------------------------------- */
+
+typedef struct raster_queue {
+    const amb_draw *draw;
+    int count;     /* quads waiting, below RASTER_QUADS */
+    uint32_t live; /* bits of their lanes */
+    raster_pixels at;
+    const float *varying[3][RASTER_QUADS]; /* of each quad's three vertices */
+    f32x p[3], depth;                      /* perspective weights before division */
+    i32x position, primitive_front;
+} raster_queue;
+
+#if AMB_LANES > 4
+static inline f32x permute(f32x a, i32x index)
+{
+#if AMB_LANES == 16
+    return (f32x)_mm512_permutexvar_ps((__m512i)index, (__m512)a);
+#else
+    return (f32x)_mm256_permutevar8x32_ps((__m256)a, (__m256i)index);
+#endif
+}
+
+/* Lane `component` of every quad, to all lanes of the quad. */
+#if AMB_LANES == 16
+#define QUAD_SPLAT(a, component) ((f32x)_mm512_permute_ps((__m512)(a), 0x55 * (component)))
+#else
+#define QUAD_SPLAT(a, component) ((f32x)_mm256_permute_ps((__m256)(a), 0x55 * (component)))
+#endif
+
+/* The varyings of quads of different triangles. Records are padded, so that four floats can always be read. */
+static inline void interpolate_quads(const raster_queue *queue, f32x b1, f32x b2, f32x *varying)
+{
+    int floats = queue->draw->varying_floats;
+    for (int i = 0; i < floats; i += 4) {
+        f32x base = load_quads(queue->varying[0], (size_t)i);
+        f32x delta1 = load_quads(queue->varying[1], (size_t)i) - base;
+        f32x delta2 = load_quads(queue->varying[2], (size_t)i) - base;
+#define COMPONENT(k) varying[i + k] = (QUAD_SPLAT(base, k) + QUAD_SPLAT(delta1, k) * b1) + QUAD_SPLAT(delta2, k) * b2
+        COMPONENT(0);
+        COMPONENT(1);
+        COMPONENT(2);
+        COMPONENT(3);
+#undef COMPONENT
+    }
+}
+
+/* Shades the waiting quads. */
+static __attribute__((noinline)) void flush_queue(const raster_tile *tile, raster_queue *queue)
+{
+    if (queue->count == 0)
+        return;
+    const amb_draw *draw = queue->draw;
+    for (int i = queue->count; i < RASTER_QUADS; i++) { /* dead lanes: any valid memory */
+        queue->at.quad[i] = tile->spare;
+        for (int k = 0; k < 3; k++)
+            queue->varying[k][i] = queue->varying[k][0];
+    }
+    f32x varying[AMB_MAX_VARYINGS + 4];
+    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = queue->depth};
+    in.live = m_from_bits(queue->live);
+    in.front = queue->primitive_front < 0;
+    in.primitive = queue->primitive_front & INT32_MAX;
+    in.thread = tile->thread;
+    set_position(&in, queue->position);
+    f32x scale = 1.0f / ((queue->p[0] + queue->p[1]) + queue->p[2]);
+    interpolate_quads(queue, queue->p[1] * scale, queue->p[2] * scale, varying);
+    shade_group(tile, draw, &queue->at, &in, tests_late(draw), true);
+    queue->count = 0;
+    queue->live = 0;
+}
+
+/* Is one of the block's covered pixels waiting? Then its turn must come first. */
+static inline void flush_overlap(const raster_tile *tile, raster_queue *queue, const float *block, uint32_t covered)
+{
+    for (int i = 0; i < queue->count; i++) {
+        ptrdiff_t lane = queue->at.quad[i] - block;
+        if (lane >= 0 && lane < AMB_LANES && (covered >> lane & queue->live >> 4 * i & 15u) != 0) {
+            flush_queue(tile, queue);
+            return;
+        }
+    }
+}
+
+/* Puts the block's live quads into the queue. */
+static inline void queue_quads(const raster_tile *tile, raster_queue *queue, const raster_shading *s, float *block,
+                               const f32x p[3], f32x depth, i32x position, uint32_t live)
+{
+    uint32_t wanted = 0;
+    for (int i = 0; i < RASTER_QUADS; i++)
+        wanted |= (uint32_t)((live >> 4 * i & 15u) != 0) << i;
+    while (wanted != 0) {
+        int first = queue->count;
+        i32x index = i_load(tile->packing + (size_t)(wanted * RASTER_QUADS + (uint32_t)first) * AMB_LANES);
+        maskx taken = i_lane_index() >= 4 * first;
+        for (int k = 0; k < 3; k++)
+            queue->p[k] = f_sel(taken, permute(p[k], index), queue->p[k]);
+        queue->depth = f_sel(taken, permute(depth, index), queue->depth);
+        queue->position = i_sel(taken, f_bits(permute(f_from_bits(position), index)), queue->position);
+        queue->primitive_front = i_sel(taken, i_set((int32_t)s->primitive_front), queue->primitive_front);
+        for (; wanted != 0 && queue->count < RASTER_QUADS; wanted &= wanted - 1) {
+            int quad = __builtin_ctz(wanted), slot = queue->count++;
+            queue->live |= (live >> 4 * quad & 15u) << 4 * slot;
+            queue->at.quad[slot] = block + 4 * quad;
+            for (int k = 0; k < 3; k++)
+                queue->varying[k][slot] = s->vertex[k]->varying;
+        }
+        if (queue->count == RASTER_QUADS)
+            flush_queue(tile, queue);
+    }
+}
+#else
+static inline void flush_queue(const raster_tile *tile, raster_queue *queue) { (void)tile, (void)queue; }
+#endif
+
+static inline bool all_quads_live(uint32_t live)
+{
+    live |= live >> 1;
+    live |= live >> 2;
+    return (live & (AMB_ALL_LANES / 15u)) == AMB_ALL_LANES / 15u;
+}
+
+/* ---- blocks ----------------------------------------------------------------------------------------------------- */
 
 /* Differences from vertex 0: varying = base + delta1·b1 + delta2·b2. */
 static inline void make_attributes(raster_shading *s)
@@ -139,58 +269,68 @@ static inline void make_attributes(raster_shading *s)
     s->attributes = true;
 }
 
+/* A block of one triangle, shaded at once. */
+static inline void shade_whole(const raster_tile *tile, raster_shading *s, const raster_pixels *at, const f32x p[3],
+                               amb_fs_in *in, bool late)
+{
+    f32x varying[AMB_MAX_VARYINGS + 1];
+    int floats = s->draw->varying_floats;
+    in->varyings = varying;
+    if (floats > 0 && !s->attributes)
+        make_attributes(s);
+    f32x scale = 1.0f / ((p[0] + p[1]) + p[2]), b1 = p[1] * scale, b2 = p[2] * scale;
+    for (int i = 0; i < floats; i++)
+        varying[i] = (s->base[i] + s->delta1[i] * b1) + s->delta2[i] * b2;
+    shade_group(tile, s->draw, at, in, late, false);
+}
+
 /* A covered block of a triangle. e: the three edge functions at the lanes' pixel centres, in units of 1/256 of the
  * exact integer; each is the weight of the vertex opposite. Inside the triangle all are ≥ 0, so nothing cancels: the
  * error of a varying stays within a few units in the last place of the largest of its three vertices' values. */
-static inline void fragment_triangle(const raster_tile *tile, raster_shading *s, int bx, int by, maskx cover,
-                                     const f32x e[3])
+static inline void fragment_triangle(const raster_tile *tile, raster_shading *s, raster_queue *queue, int bx, int by,
+                                     maskx cover, const f32x e[3])
 {
     const amb_draw *draw = s->draw;
-    float *block = block_at(tile, bx, by);
+    const raster_pixels at = {{block_at(tile, bx, by)}};
     if (!s->prepared)
         prepare_shading(s);
-    f32x l1 = e[1] * s->inverse_area, l2 = e[2] * s->inverse_area;
-    f32x depth = f_saturate(((s->z0 + s->dz1 * l1) + s->dz2 * l2) + s->bias);
-    const bool front = s->primitive_front >> 31 != 0, late = tests_late(draw);
-    maskx live = live_lanes(tile, draw, block, bx, by, cover, depth, front, late);
-    if (!m_any(live))
+    maskx covered = cover & inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
+#if AMB_LANES > 4
+    flush_overlap(tile, queue, at.quad[0], m_bits(covered));
+#else
+    (void)queue;
+#endif
+    f32x depth =
+        f_saturate(((s->z0 + s->dz1 * (e[1] * s->inverse_area)) + s->dz2 * (e[2] * s->inverse_area)) + s->bias);
+    const bool late = tests_late(draw);
+    maskx live = live_lanes(tile, draw, &at, covered, depth, front, late);
+    uint32_t bits = m_bits(live);
+    if (bits == 0)
         return;
-    f32x varying[AMB_MAX_VARYINGS + 1];
-    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = depth, .live = live};
-    in.front = m_set(front);
-    in.primitive = (int)(s->primitive_front & 0x7fffffffu);
-    in.thread = tile->thread;
-    block_position(tile, bx, by, &in);
-    int floats = draw->varying_floats;
-    if (floats > 0) {
-        if (!s->attributes)
-            make_attributes(s);
-        f32x b1 = l1, b2 = l2;
-        if (!s->affine) {
-            f32x p0 = e[0] * s->inverse_w[0], p1 = e[1] * s->inverse_w[1], p2 = e[2] * s->inverse_w[2];
-            f32x scale = 1.0f / ((p0 + p1) + p2);
-            b1 = p1 * scale, b2 = p2 * scale;
-        }
-        for (int i = 0; i < floats; i++)
-            varying[i] = (s->base[i] + s->delta1[i] * b1) + s->delta2[i] * b2;
+    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
+#if AMB_LANES > 4
+    if (!all_quads_live(bits)) {
+        queue_quads(tile, queue, s, at.quad[0], p, depth, block_position(tile, bx, by), bits);
+        return;
     }
-    shade_block(tile, draw, block, &in, depth, front, late);
+#endif
+    amb_fs_in in = {.uniforms = draw->uniforms, .depth = depth, .live = live, .front = front, .thread = tile->thread};
+    in.primitive = i_set((int32_t)(s->primitive_front & 0x7fffffffu));
+    set_position(&in, block_position(tile, bx, by));
+    shade_whole(tile, s, &at, p, &in, late);
 }
 
 /* A block of a full-screen draw. */
 static inline void fragment_screen(const raster_tile *tile, const amb_draw *draw, int bx, int by)
 {
-    float *block = block_at(tile, bx, by);
-    f32x depth = f_set(1.0f);
+    const raster_pixels at = {{block_at(tile, bx, by)}};
     const bool late = tests_late(draw);
-    maskx live = live_lanes(tile, draw, block, bx, by, m_set(true), depth, true, late);
-    if (!m_any(live))
+    amb_fs_in in = {.uniforms = draw->uniforms, .depth = f_set(1.0f), .front = m_set(true), .thread = tile->thread};
+    in.live = live_lanes(tile, draw, &at, inside_clip(tile, bx, by), in.depth, in.front, late);
+    if (!m_any(in.live))
         return;
-    amb_fs_in in = {.uniforms = draw->uniforms, .depth = depth, .live = live};
-    in.front = m_set(true);
-    in.thread = tile->thread;
-    block_position(tile, bx, by, &in);
-    shade_block(tile, draw, block, &in, depth, true, late);
+    set_position(&in, block_position(tile, bx, by));
+    shade_group(tile, draw, &at, &in, late, false);
 }
 
 #endif

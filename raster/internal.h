@@ -24,6 +24,7 @@
 #define RASTER_BATCH_CHUNKS 2048
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
 #define RASTER_MAX_POINT 4096.0f
+#define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */
 #define RASTER_TILE 64
 
 /* Clip codes of a vertex. */
@@ -47,10 +48,10 @@ typedef struct raster_draw {
 } raster_draw;
 
 /* A vertex after the vertex stage, without its window position; the varyings follow, and padding to a multiple of four
- * words. */
+ * words: four floats can be read wherever one can. */
 typedef struct raster_vertex {
     float z; /* depth 0…1 */
-    float inverse_w;
+    float inverse_w, padding[2];
     float varying[];
 } raster_vertex;
 
@@ -94,9 +95,10 @@ typedef struct raster_scratch {
     int32_t *code;
     uint32_t *corner[4]; /* of the triangles: three local vertices, running number; padded to the lanes */
     uint32_t corner_count, unique_count;
-    float *group; /* varyings of one group of vertices, as the shader writes them */
-    float *tile;  /* colour and depth of one tile, block by block */
-    bool failed;  /* out of memory */
+    float *group;     /* varyings of one group of vertices, as the shader writes them */
+    float *tile;      /* colour and depth of one tile, block by block */
+    int32_t *packing; /* [wanted][first][lane]: source lanes that bring a block's wanted quads to slots first… */
+    bool failed;      /* out of memory */
     amb_pass_stats stats;
 } raster_scratch;
 

@@ -63,7 +63,8 @@ static bool line_covers(const raster_line *line, int64_t cx, int64_t cy)
     return line->steep && to_corner * dy + v * dx == 0 && (dy > 0 ? v <= 0 && v + dy >= 0 : v >= 0 && v + dy <= 0);
 }
 
-static void play_line_block(const raster_tile *tile, raster_shading *s, const raster_line *line, int bx, int by)
+static void play_line_block(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_line *line,
+                            int bx, int by)
 {
     int64_t dx = line->x1 - line->x0, dy = line->y1 - line->y0;
     int64_t cx = ((int64_t)tile->x0 + bx * AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
@@ -84,11 +85,11 @@ static void play_line_block(const raster_tile *tile, raster_shading *s, const ra
         return;
     f32x t = f_saturate(f_load(along));
     const f32x weight[3] = {1.0f - t, t, f_set(0.0f)};
-    fragment_triangle(tile, s, bx, by, m_from_bits(cover), weight);
+    fragment_triangle(tile, s, queue, bx, by, m_from_bits(cover), weight);
 }
 
 /* Coverage and varyings of the line of vertices 0 and 1; t of a pixel is that of its centre along the longer axis. */
-static void play_line(const raster_tile *tile, raster_shading *s, uint32_t low, uint32_t high)
+static void play_line(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low, uint32_t high)
 {
     const raster_chunk *chunk = s->chunk;
     const uint32_t *v = s->number;
@@ -100,11 +101,11 @@ static void play_line(const raster_tile *tile, raster_shading *s, uint32_t low, 
     s->inverse_area = 1.0f;
     for (int by = box.y0; by <= box.y1; by++)
         for (int bx = box.x0; bx <= box.x1; bx++)
-            play_line_block(tile, s, &line, bx, by);
+            play_line_block(tile, s, queue, &line, bx, by);
 }
 
 /* A square about vertex 0, its left and upper edges inside, its right and lower ones outside. */
-static void play_point(const raster_tile *tile, raster_shading *s, uint32_t low, uint32_t high)
+static void play_point(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low, uint32_t high)
 {
     int32_t x = s->chunk->x[s->number[0]], y = s->chunk->y[s->number[0]];
     float size = s->draw->point_size > 0.0f ? s->draw->point_size : 1.0f;
@@ -118,7 +119,7 @@ static void play_point(const raster_tile *tile, raster_shading *s, uint32_t low,
             i32x cy = (i_set(tile->y0 + by * AMB_BLOCK_H) + i_block_y()) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
             maskx cover = (cx >= x - half) & (cx < x + half) & (cy >= y - half) & (cy < y + half);
             if (m_any(cover))
-                fragment_triangle(tile, s, bx, by, cover, weight);
+                fragment_triangle(tile, s, queue, bx, by, cover, weight);
         }
 }
 

@@ -14,6 +14,8 @@ typedef struct raster_tile {
     int blocks_x;                           /* a row of the tile */
     int right, bottom;                      /* pixels of the target inside the tile */
     int clip_x0, clip_y0, clip_x1, clip_y1; /* of the draw: its scissor, in pixels of the tile, ends exclusive */
+    float *spare;                           /* a block that is nobody's */
+    const int32_t *packing;                 /* raster_scratch's */
     int thread;
     amb_pass_stats *stats;
 } raster_tile;
@@ -32,6 +34,65 @@ static inline maskx inside_clip(const raster_tile *tile, int bx, int by)
         return m_set(true);
     i32x lane_x = i_set(x) + i_block_x(), lane_y = i_set(y) + i_block_y();
     return (lane_x >= tile->clip_x0) & (lane_x < tile->clip_x1) & (lane_y >= tile->clip_y0) & (lane_y < tile->clip_y1);
+}
+
+/* ---- access ----------------------------------------------------------------------------------------------------- */
+
+#define RASTER_QUADS (AMB_LANES / 4)
+
+/* Where the lanes' pixels lie: plane 0 of each quad. Either a whole block, or quads from anywhere in the tile; two of
+ * them may be the same quad as long as no pixel is live in both. */
+typedef struct raster_pixels {
+    float *quad[RASTER_QUADS];
+} raster_pixels;
+
+static inline f32x load_quads(const float *const quad[RASTER_QUADS], size_t offset)
+{
+#if AMB_LANES == 16
+    __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(quad[0] + offset));
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(quad[1] + offset), 1);
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(quad[2] + offset), 2);
+    return (f32x)_mm512_insertf32x4(r, _mm_loadu_ps(quad[3] + offset), 3);
+#elif AMB_LANES == 8
+    return (f32x)_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(quad[0] + offset)),
+                                      _mm_loadu_ps(quad[1] + offset), 1);
+#else
+    return f_load(quad[0] + offset);
+#endif
+}
+
+static inline f32x load_plane(const raster_pixels *at, int plane, bool packed)
+{
+    size_t offset = (size_t)plane * AMB_LANES;
+    return packed ? load_quads((const float *const *)at->quad, offset) : f_load(at->quad[0] + offset);
+}
+
+/* Writes the live lanes; the others keep what they hold. */
+static inline void store_plane(const raster_pixels *at, int plane, f32x value, maskx live, bool packed)
+{
+    size_t offset = (size_t)plane * AMB_LANES;
+    float *first = at->quad[0] + offset;
+    if (!packed) {
+#if AMB_LANES == 16
+        _mm512_mask_storeu_ps(first, (__mmask16)m_bits(live), (__m512)value);
+#else
+        f_store(first, f_sel(live, value, f_load(first)));
+#endif
+        return;
+    }
+#if AMB_LANES == 16
+    uint32_t bits = m_bits(live);
+    _mm_mask_storeu_ps(first, (__mmask8)(bits & 15u), _mm512_castps512_ps128((__m512)value));
+    _mm_mask_storeu_ps(at->quad[1] + offset, (__mmask8)(bits >> 4 & 15u), _mm512_extractf32x4_ps((__m512)value, 1));
+    _mm_mask_storeu_ps(at->quad[2] + offset, (__mmask8)(bits >> 8 & 15u), _mm512_extractf32x4_ps((__m512)value, 2));
+    _mm_mask_storeu_ps(at->quad[3] + offset, (__mmask8)(bits >> 12), _mm512_extractf32x4_ps((__m512)value, 3));
+#elif AMB_LANES == 8
+    float *second = at->quad[1] + offset;
+    __m256 v = (__m256)value, m = (__m256)live;
+    _mm_storeu_ps(first, _mm_blendv_ps(_mm_loadu_ps(first), _mm256_castps256_ps128(v), _mm256_castps256_ps128(m)));
+    _mm_storeu_ps(second,
+                  _mm_blendv_ps(_mm_loadu_ps(second), _mm256_extractf128_ps(v, 1), _mm256_extractf128_ps(m, 1)));
+#endif
 }
 
 /* ---- depth and stencil ------------------------------------------------------------------------------------------ */
@@ -102,76 +163,76 @@ static inline i32x stencil_result(amb_stencil_op op, i32x stored, int reference)
     }
 }
 
-static inline i32x load_stencil(const raster_tile *tile, const float *block)
+static inline i32x load_stencil(const raster_tile *tile, const raster_pixels *at, bool packed)
 {
-    return f_to_i(f_load(block + (size_t)tile->pass->stencil_plane * AMB_LANES)) & 255;
+    return f_to_i(load_plane(at, tile->pass->stencil_plane, packed)) & 255;
+}
+
+/* Which lanes pass the stencil test of the side they show? */
+static inline maskx stencil_matches(const amb_stencil *s, i32x stored, maskx front)
+{
+    int mask = 255 & ~s->read_mask_off;
+    i32x reference = i_set(s->reference & mask);
+    return (front & stencil_passes(s->front.compare, reference, stored & mask)) |
+           (~front & stencil_passes(s->back.compare, reference, stored & mask));
 }
 
 /* Which lanes pass the draw's stencil and depth tests. */
-static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const float *block, bool front,
+static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
                                  f32x depth)
 {
-    maskx passed = depth_passes(draw->depth_compare, depth, f_load(block));
-    if (draw->stencil.on) {
-        int mask = 255 & ~draw->stencil.read_mask_off;
-        passed &= stencil_passes(front ? draw->stencil.front.compare : draw->stencil.back.compare,
-                                 i_set(draw->stencil.reference & mask), load_stencil(tile, block) & mask);
-    }
+    maskx passed = depth_passes(draw->depth_compare, depth, load_plane(at, 0, false));
+    if (draw->stencil.on)
+        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, false), front);
     return passed;
 }
 
-/* Tests the live lanes for good, writes depth and stencil, and returns the lanes whose colour is to be written. */
-static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw *draw, float *block, bool front,
-                                         f32x depth, maskx live)
+static inline i32x stencil_update(const amb_stencil *s, const amb_stencil_face *face, i32x stored, maskx match,
+                                  maskx near_enough)
 {
-    const amb_stencil *stencil = &draw->stencil;
-    maskx near_enough = depth_passes(draw->depth_compare, depth, f_load(block)), passed = live & near_enough;
-    if (stencil->on) {
-        const amb_stencil_face *face = front ? &stencil->front : &stencil->back;
-        i32x stored = load_stencil(tile, block);
-        int read = 255 & ~stencil->read_mask_off, write = 255 & ~stencil->write_mask_off;
-        maskx match = stencil_passes(face->compare, i_set(stencil->reference & read), stored & read);
-        i32x result = i_sel(near_enough, stencil_result(face->pass, stored, stencil->reference),
-                            stencil_result(face->depth_fail, stored, stencil->reference));
-        result = i_sel(match, result, stencil_result(face->fail, stored, stencil->reference));
-        result = i_sel(live, (result & write) | (stored & ~write), stored);
-        f_store(block + (size_t)tile->pass->stencil_plane * AMB_LANES, i_to_f(result));
+    i32x result = i_sel(near_enough, stencil_result(face->pass, stored, s->reference),
+                        stencil_result(face->depth_fail, stored, s->reference));
+    return i_sel(match, result, stencil_result(face->fail, stored, s->reference));
+}
+
+/* Tests the live lanes for good, writes depth and stencil, and returns the lanes whose colour is to be written. */
+static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
+                                         maskx front, f32x depth, maskx live, bool packed)
+{
+    const amb_stencil *s = &draw->stencil;
+    maskx near_enough = depth_passes(draw->depth_compare, depth, load_plane(at, 0, packed)),
+          passed = live & near_enough;
+    if (s->on) {
+        i32x stored = load_stencil(tile, at, packed);
+        int write = 255 & ~s->write_mask_off;
+        maskx match = stencil_matches(s, stored, front);
+        i32x result = i_sel(front, stencil_update(s, &s->front, stored, match, near_enough),
+                            stencil_update(s, &s->back, stored, match, near_enough));
+        result = (result & write) | (stored & ~write);
+        store_plane(at, tile->pass->stencil_plane, i_to_f(result), live, packed);
         passed &= match;
     }
     if (!draw->depth_write_off)
-        f_store(block, f_sel(passed, depth, f_load(block)));
+        store_plane(at, 0, depth, passed, packed);
     return passed;
 }
 
 /* ---- blending --------------------------------------------------------------------------------------------------- */
 
-static inline void store_plane(float *plane, f32x value, maskx live, bool all)
-{
-    f_store(plane, all ? value : f_sel(live, value, f_load(plane)));
-}
-
-/* One attachment of one block. */
-static inline void store_target(float *plane, int channels, amb_blend mode, const f32x source[4], maskx live, bool all)
+/* One attachment, with one of the plain modes. */
+static inline void store_target(const raster_pixels *at, int plane, int channels, amb_blend mode, const f32x source[4],
+                                maskx live, bool packed)
 {
     f32x rest = 1.0f - source[3];
-    switch (mode) {
-    case AMB_BLEND_ALPHA:
-        for (int c = 0; c < channels; c++) {
-            float *p = plane + c * AMB_LANES;
-            store_plane(p, (c == 3 ? source[3] : source[c] * source[3]) + f_load(p) * rest, live, all);
-        }
-        break;
-    case AMB_BLEND_ADD:
-        for (int c = 0; c < channels; c++)
-            store_plane(plane + c * AMB_LANES, source[c] + f_load(plane + c * AMB_LANES), live, all);
-        break;
-    case AMB_BLEND_MULTIPLY:
-        for (int c = 0; c < channels; c++)
-            store_plane(plane + c * AMB_LANES, source[c] * f_load(plane + c * AMB_LANES), live, all);
-        break;
-    default:
-        for (int c = 0; c < channels; c++)
-            store_plane(plane + c * AMB_LANES, source[c], live, all);
+    for (int c = 0; c < channels; c++, plane++) {
+        f32x value = source[c];
+        if (mode == AMB_BLEND_ALPHA)
+            value = (c == 3 ? source[3] : source[c] * source[3]) + load_plane(at, plane, packed) * rest;
+        else if (mode == AMB_BLEND_ADD)
+            value = source[c] + load_plane(at, plane, packed);
+        else if (mode == AMB_BLEND_MULTIPLY)
+            value = source[c] * load_plane(at, plane, packed);
+        store_plane(at, plane, value, live, packed);
     }
 }
 
@@ -234,8 +295,9 @@ static inline f32x blend_result(amb_blend_op op, f32x source, f32x source_factor
 }
 
 /* Any equation, any channel mask. */
-static __attribute__((noinline)) void store_general(float *plane, int channels, const amb_draw *draw, int target,
-                                                    const amb_fs_out *out, maskx live)
+static __attribute__((noinline)) void store_general(const raster_pixels *at, int plane, int channels,
+                                                    const amb_draw *draw, int target, const amb_fs_out *out, maskx live,
+                                                    bool packed)
 {
     static const amb_blend_equation known[AMB_BLEND_EQUATION] = {
         [AMB_BLEND_ALPHA] = {AMB_FACTOR_SOURCE_ALPHA, AMB_FACTOR_ONE_MINUS_SOURCE_ALPHA, AMB_FACTOR_ONE,
@@ -250,7 +312,7 @@ static __attribute__((noinline)) void store_general(float *plane, int channels, 
                                draw->blend_constant.w};
     f32x stored[4] = {f_set(0.0f), f_set(0.0f), f_set(0.0f), f_set(1.0f)};
     for (int c = 0; c < channels; c++)
-        stored[c] = f_load(plane + c * AMB_LANES);
+        stored[c] = load_plane(at, plane + c, packed);
     for (int c = 0; c < channels; c++) {
         if (draw->channels_off[target] >> c & 1)
             continue;
@@ -261,27 +323,25 @@ static __attribute__((noinline)) void store_general(float *plane, int channels, 
                          : blend_result(c == 3 ? q->alpha_op : q->color_op, source[c],
                                         blend_factor(fs, c, source, second, stored, constant), stored[c],
                                         blend_factor(ft, c, source, second, stored, constant));
-        f_store(plane + c * AMB_LANES, f_sel(live, value, stored[c]));
+        store_plane(at, plane + c, value, live, packed);
     }
 }
 
-static inline void store_colors(const raster_tile *tile, const amb_draw *draw, float *block, const amb_fs_out *out,
-                                maskx live)
+static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
+                                const amb_fs_out *out, maskx live, bool packed)
 {
     const amb_pass *pass = tile->pass;
-    bool all = m_all(live);
     for (int i = 0; i < pass->target_count; i++) {
         if (draw->targets_off >> i & 1u)
             continue;
         const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
-        float *plane = block + (size_t)pass->channel_first[i] * AMB_LANES;
-        int channels = pass->target.color[i]->channels;
+        int plane = pass->channel_first[i], channels = pass->target.color[i]->channels;
         if (draw->blend[i] == AMB_BLEND_EQUATION || draw->channels_off[i] != 0)
-            store_general(plane, channels, draw, i, out, live);
+            store_general(at, plane, channels, draw, i, out, live, packed);
         else if (channels == 4) /* the usual case, unrolled */
-            store_target(plane, 4, draw->blend[i], source, live, all);
+            store_target(at, plane, 4, draw->blend[i], source, live, packed);
         else
-            store_target(plane, channels, draw->blend[i], source, live, all);
+            store_target(at, plane, channels, draw->blend[i], source, live, packed);
     }
 }
 

@@ -343,6 +343,7 @@ static void free_scratch(raster_scratch *scratch)
     free(scratch->corner[0]);
     free(scratch->group);
     free(scratch->tile);
+    free(scratch->packing);
 }
 
 void amb_pass_close(amb_pass **pass)

@@ -108,8 +108,8 @@ static void play_screens(raster_tile *tile, const raster_chunk *chunk, size_t co
 }
 
 /* Plays `count` primitives of the chunk; `index` is readable to AMB_LANES. */
-static inline void play_group(const raster_tile *tile, raster_shading *s, const raster_chunk *chunk,
-                              const int32_t *index, int count)
+static inline void play_group(const raster_tile *tile, raster_shading *s, raster_queue *queue,
+                              const raster_chunk *chunk, const int32_t *index, int count)
 {
     edge_group g;
     make_group(tile, chunk, index, &g);
@@ -119,27 +119,27 @@ static inline void play_group(const raster_tile *tile, raster_shading *s, const 
         s->primitive_front = g.primitive_front[n];
         s->prepared = false;
         if (chunk->draw->lines) {
-            play_line(tile, s, g.low[n], g.high[n]);
+            play_line(tile, s, queue, g.low[n], g.high[n]);
             continue;
         }
         if (chunk->draw->points) {
-            play_point(tile, s, g.low[n], g.high[n]);
+            play_point(tile, s, queue, g.low[n], g.high[n]);
             continue;
         }
         if (!(g.small >> n & 1u)) {
-            play_large(tile, s, g.low[n], g.high[n]);
+            play_large(tile, s, queue, g.low[n], g.high[n]);
             continue;
         }
         raster_edge e[3];
         for (int i = 0; i < 3; i++)
             e[i] = (raster_edge){g.c[i][n], g.a[i][n], g.b[i][n], g.bias[i][n]};
         s->inverse_area = g.inverse_area[n];
-        cover_32(tile, s, e, box_in_tile(tile, g.low[n], g.high[n]));
+        cover_32(tile, s, queue, e, box_in_tile(tile, g.low[n], g.high[n]));
     }
 }
 
 /* The chunk's binned and large triangles, merged back into their order. */
-static void play_chunk(raster_tile *tile, raster_shading *s, const raster_chunk *chunk, int number)
+static void play_chunk(raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk, int number)
 {
     const uint16_t *binned = chunk->entry + chunk->tile_start[number];
     const uint16_t *binned_end = chunk->entry + chunk->tile_start[number + 1];
@@ -148,6 +148,9 @@ static void play_chunk(raster_tile *tile, raster_shading *s, const raster_chunk 
     s->draw = &chunk->draw->state;
     if (!set_clip(tile, chunk->draw))
         return;
+    if (queue->draw != s->draw)
+        flush_queue(tile, queue);
+    queue->draw = s->draw;
     while (binned < binned_end || large < large_end) {
         int32_t index[AMB_LANES];
         int count = 0;
@@ -157,7 +160,7 @@ static void play_chunk(raster_tile *tile, raster_shading *s, const raster_chunk 
         }
         for (int i = count; i < AMB_LANES; i++)
             index[i] = index[0];
-        play_group(tile, s, chunk, index, count);
+        play_group(tile, s, queue, chunk, index, count);
     }
 }
 
@@ -165,6 +168,9 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
 {
     raster_tile tile = {.pass = pass, .data = scratch->tile, .thread = thread, .stats = &scratch->stats};
     raster_shading shading;
+    raster_queue queue = {.p = {f_set(1.0f)}};
+    tile.spare = scratch->tile + (size_t)pass->tile_size * (size_t)pass->tile_size * (size_t)pass->planes;
+    tile.packing = scratch->packing;
     tile.x0 = number % pass->tiles_x * pass->tile_size;
     tile.y0 = number / pass->tiles_x * pass->tile_size;
     tile.blocks_x = pass->tile_size / AMB_BLOCK_W;
@@ -176,10 +182,13 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
         while (i + screens < pass->chunk_count && pass->chunk[i + screens].count == 0)
             screens++;
         if (screens > 0)
+            flush_queue(&tile, &queue);
+        if (screens > 0)
             play_screens(&tile, &pass->chunk[i], screens);
         else
-            play_chunk(&tile, &shading, &pass->chunk[i], number);
+            play_chunk(&tile, &shading, &queue, &pass->chunk[i], number);
         i += screens > 0 ? screens : 1;
     }
+    flush_queue(&tile, &queue);
     store_tile(&tile);
 }

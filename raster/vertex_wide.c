@@ -38,7 +38,7 @@ static void write_records(raster_chunk *chunk, uint32_t first, v4x clip, const f
         record[0] = z[lane];
         record[1] = inverse_w[lane];
         for (uint32_t k = 0; k < floats; k++)
-            record[2 + k] = group[k * AMB_LANES + lane];
+            record[RASTER_VERTEX_WORDS + k] = group[k * AMB_LANES + lane];
     }
 }
 

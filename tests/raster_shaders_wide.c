@@ -22,7 +22,7 @@ static void value(const amb_fs_in *in, amb_fs_out *out)
     out->color[1] = (v4x){f_ddx(v->x), f_ddy(v->x), in->x, in->y};
 #endif
     out->color[2] =
-        (v4x){f_set((float)in->primitive), f_sel(in->front, f_set(1.0f), f_set(0.0f)), in->depth, f_set(1.0f)};
+        (v4x){i_to_f(in->primitive), f_sel(in->front, f_set(1.0f), f_set(0.0f)), in->depth, f_set(1.0f)};
     if (u->discard > 0.0f)
         out->live &= v->x >= u->discard;
 }

@@ -37,8 +37,8 @@ typedef struct amb_fs_in {
     f32x x, y;            /* pixel centre in window coordinates, y down */
     f32x depth;           /* 0…1; for full-screen draws the far plane, 1 */
     maskx live;           /* covered lanes that passed the early depth test; others are helpers for derivatives */
-    maskx front;          /* all lanes alike: front face */
-    int primitive;        /* running number of the triangle, line or point in its draw, before clipping */
+    maskx front;          /* front face; lanes may belong to different triangles of the draw, quads never do */
+    i32x primitive;       /* running number of the triangle, line or point in its draw, before clipping */
     int thread;           /* 0…threads-1, for per-thread scratch */
 } amb_fs_in;
 
