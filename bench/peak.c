@@ -8,16 +8,16 @@
 
 /* Returns a value so that nothing is optimised away; FLOPS_PER_ROUND in each lane and round. */
 AMB_DECLARE_WIDE(float, peak_flops, (long rounds));
-enum { CHAINS = 12, FLOPS_PER_ROUND = 2 * CHAINS };
+enum { CHAINS = 12, FLOPS_PER_ROUND = 2 * CHAINS, FLOPS_TASKS = 64 };
 
 /* ---- flops --------------------------------------------------------------------------------------------------------
  */
 
 typedef struct flops_state {
-    long rounds; /* of one lane on one thread; more of either share them */
+    long rounds; /* of one lane; lanes and tasks share them */
     long share;
     float (*kernel)(long rounds);
-    volatile float sink[1024];
+    volatile float sink[FLOPS_TASKS];
 } flops_state;
 
 static amb_status flops_open(const bench_options *options, void **state, amb_error *error)
@@ -39,9 +39,9 @@ static amb_status flops_run(void *state, const amb_context *context, amb_error *
 {
     flops_state *s = state;
     (void)error;
-    s->share = s->rounds / ((long)amb_context_isa(context) * amb_context_threads(context));
+    s->share = s->rounds / ((long)amb_context_isa(context) * FLOPS_TASKS);
     s->kernel = AMB_DISPATCH(amb_context_isa(context), peak_flops);
-    amb_parallel_for(context, amb_context_threads(context), flops_task, s);
+    amb_parallel_for(context, FLOPS_TASKS, flops_task, s);
     return AMB_OK;
 }
 static bench_count flops_count(const void *state, const amb_context *context)
