@@ -3,7 +3,7 @@
 _ambiance_options() {
     case $1 in
     list) echo --post --assets --assets-dir --pack --json --names --help ;;
-    render) echo --output --time --size --set --aov --post --half --float --frame --threads --isa --assets --pack \
+    render) echo --output --time --size --set --aov --post --intermediates --half --float --frame --threads --isa --assets --pack \
         --json --quiet --help ;;
     info) echo --json --help ;;
     compare) echo --tolerance --max-ulp --layer --peak --diff --json --quiet --help ;;

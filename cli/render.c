@@ -22,6 +22,7 @@ static const char help[] =
     "  --set NAME=VALUE   a parameter of the scene, as `ambiance list SCENE` shows them; may be repeated\n"
     "  --aov NAME,…       further layers for EXR files, or `all`\n"
     "  --post CHAIN       post chain, as \"bloom:threshold=1;display\"; `scene`: the scene's own; `none`\n"
+    "  --intermediates    every step of the post passes as further layers of EXR files (bloom.bright, mlaa.edges, …)\n"
     "  --half, --float    pixel type of EXR files (default --float)\n"
     "  --frame N          frame number of the file name and of the grain of post passes (default 0)\n" SETUP_HELP
     "  --json             describe the result for programs\n"
@@ -48,7 +49,7 @@ typedef struct request {
     char path[MAX_OUTPUTS][PATH_MAX];
     int output_count;
     amb_pixel_type pixel_type;
-    bool json, quiet;
+    bool intermediates, json, quiet;
 } request;
 
 /* ---- the command line -------------------------------------------------------------------------------------------- */
@@ -94,6 +95,9 @@ static int read_option(request *r, int option)
         return read_aovs(r, optarg);
     case 'p':
         r->post = optarg;
+        return 0;
+    case 'i':
+        r->intermediates = true;
         return 0;
     case 'h':
         r->pixel_type = AMB_HALF;
@@ -159,6 +163,7 @@ static int read_request(int argc, char **argv, request *r)
         {"set", required_argument, NULL, 'S'},
         {"aov", required_argument, NULL, 'a'},
         {"post", required_argument, NULL, 'p'},
+        {"intermediates", no_argument, NULL, 'i'},
         {"half", no_argument, NULL, 'h'},
         {"float", no_argument, NULL, 'f'},
         {"frame", required_argument, NULL, 'n'},
@@ -319,7 +324,7 @@ typedef struct seconds {
 static int apply_chain(const request *r, const chains *c, int kind, amb_frame *frame)
 {
     amb_error error;
-    if (amb_chain_apply(c->chain[kind], frame, r->frame_index, 0, &error) != AMB_OK)
+    if (amb_chain_apply(c->chain[kind], frame, r->frame_index, r->intermediates && kind == 0, &error) != AMB_OK)
         return fail_library(&error);
     free(frame->meta.post);
     frame->meta.post = strdup(c->text[kind]);

@@ -114,7 +114,7 @@ static amb_status read_chain(amb_chain *chain, char *text, amb_error *error)
     if (!*text || strcmp(text, "none") == 0)
         return AMB_OK;
     while (text) {
-        char *end = text + strcspn(text, ";|");
+        char *end = text + strcspn(text, ";");
         char *rest = *end ? end + 1 : NULL;
         *end = '\0';
         amb_status status = read_pass(chain, text, error);

@@ -277,7 +277,7 @@ static void text_reads_back(void **state)
         {" none ", ""},
         {"exposure", "exposure:stops=0"},
         {" exposure : stops = 1.5 ; ", "exposure:stops=1.5"},
-        {"vignette|exposure:stops=0.1", "vignette:strength=0.5;exposure:stops=0.1"},
+        {"vignette ;exposure:stops=0.1", "vignette:strength=0.5;exposure:stops=0.1"},
         {"grain:size=2,amount=0.25", "grain:amount=0.25,size=2,colored=false"},
     };
     amb_context *context;

@@ -56,7 +56,7 @@ int amb_post_count(void);
 const amb_post_pass *amb_post_by_index(amb_isa isa, int index);
 const amb_post_pass *amb_post_by_name(amb_isa isa, const char *name);
 
-/* A chain: "bloom:threshold=1,intensity=0.3;display:curve=filmic". Passes are separated by ';' (or '|'), parameters by
+/* A chain: "bloom:threshold=1,intensity=0.3;display:curve=filmic". Passes are separated by ';', parameters by
  * ','; blanks around either are ignored; a vector's commas belong to it. "" and "none" are the empty chain. The same
  * pass may stand more than once; at most AMB_MAX_CHAIN of them. Errors: NOT_FOUND (pass, parameter), ARGUMENT, LIMIT,
  * MEMORY; one line each. `context` must outlive the chain. */
