@@ -275,7 +275,7 @@ static amb_status use(amb_assets *assets, const char *name, bool is_mesh, asset 
             item = &assets->asset[i];
     if (!item)
         return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown asset: %s; %s", name ? name : "(none)",
-                        amb_names_hint(name, assets->count, name_of, NULL, hint, sizeof hint));
+                        amb_names_hint(name ? name : "", assets->count, name_of, NULL, hint, sizeof hint));
     if ((item->row->kind == ASSET_MESH) != is_mesh)
         return amb_fail(error, AMB_ERROR_NOT_FOUND, "asset %s: it is a %s, not a %s", name,
                         is_mesh ? "texture" : "mesh", is_mesh ? "mesh" : "texture");
