@@ -6,7 +6,7 @@
 #include <ambiance/scene.h>
 
 #define LUCY_HEIGHT 2.0f      /* of every statue, world units; it stands on y = 0, its axis on x = z = 0 */
-#define LUCY_DIRECTIONS 96    /* over the whole sphere: half of them count at each point */
+#define LUCY_DIRECTIONS 64    /* over the whole sphere: half of them count at each point */
 #define LUCY_FLOOR_TEXELS 192 /* of the floor's shade map, a side */
 #define LUCY_FLOOR_SIZE 3.2f  /* world units that it covers, a side */
 

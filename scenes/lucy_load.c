@@ -66,7 +66,8 @@ static amb_status stand_up(const amb_mesh *source, amb_mesh **out, amb_error *er
             base_lo = v3_min(base_lo, mesh->position[i]);
             base_hi = v3_max(base_hi, mesh->position[i]);
         }
-    v3 foot = {0.5f * (base_lo.x + base_hi.x), lo.y, 0.5f * (base_lo.z + base_hi.z)};
+    /* A hair below the floor, so that no slit shows under it. */
+    v3 foot = {0.5f * (base_lo.x + base_hi.x), lo.y + 0.002f * (hi.y - lo.y), 0.5f * (base_lo.z + base_hi.z)};
     for (uint32_t i = 0; i < mesh->vertex_count; i++)
         mesh->position[i] = v3_scale(v3_sub(mesh->position[i], foot), scale);
     if (source->normal != NULL) {
