@@ -7,6 +7,8 @@
 
 #include <stdlib.h>
 
+extern const planet_body WIDE(planet_earth);
+
 typedef struct earth_params {
     planet_params planet;
     planet_air_params air;
@@ -94,6 +96,7 @@ static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
     v3x gloss = v3x_scale(sunlight, highlight);
 
     planet_put_surface(view, out, &p, normal, albedo, 1.0f);
+    planet_put(view, out, PLANET_LIGHT, v3x_scale(sunlight, lit));
     planet_put(view, out, EARTH_DAY, day);
     planet_put(view, out, EARTH_NIGHT, night);
     planet_put(view, out, EARTH_GLOSS, gloss);
@@ -135,17 +138,14 @@ static amb_status earth_load(const amb_context *context, amb_assets *assets, voi
     *out = NULL;
     if (!s)
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene earth");
-    const struct {
-        const char *name;
-        const amb_texture **map;
-    } maps[] = {{"earth/color", &s->colour},
-                {"earth/night", &s->night},
-                {"earth/water", &s->water},
-                {"earth/height", &s->height},
-                {"earth/clouds", &s->clouds}};
+    const planet_map_name maps[] = {{"earth/color", &s->colour},
+                                    {"earth/night", &s->night},
+                                    {"earth/water", &s->water},
+                                    {"earth/height", &s->height},
+                                    {"earth/clouds", &s->clouds}};
     amb_status status = planet_load(assets, &s->planet, error);
-    for (size_t i = 0; i < sizeof maps / sizeof *maps && status == AMB_OK; i++)
-        status = amb_assets_texture(assets, maps[i].name, maps[i].map, error);
+    if (status == AMB_OK)
+        status = planet_load_maps(assets, maps, sizeof maps / sizeof *maps, error);
     amb_normal_map_options relief = {
         .strength = 9.0f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true};
     if (status == AMB_OK)
@@ -161,7 +161,35 @@ static amb_status earth_load(const amb_context *context, amb_assets *assets, voi
     return AMB_OK;
 }
 
-static const amb_camera_key earth_flight[] = {
+static amb_status earth_draw(const void *opaque, const void *params, const planet_view *from, double time,
+                             amb_pass *pass, amb_error *error)
+{
+    const earth_params *p = params;
+    earth_uniforms u = {.state = opaque, .params = p, .cloud_shell = 1.0f + p->cloud_height};
+    planet_view *view = &u.air.view;
+    (void)time;
+    *view = *from;
+    u.air.air = planet_atmosphere(&p->air, view->sun_rgb);
+    u.air.ground_gain = p->air.ground;
+    u.air.dome_gain = p->air.dome;
+
+    amb_draw ground = planet_shell_draw("ground", planet_vertex, earth_ground, view, sizeof u);
+    amb_status status = amb_pass_draw(pass, &ground, error);
+    view->shell = u.cloud_shell;
+    amb_draw clouds = planet_shell_draw("clouds", planet_vertex, earth_clouds, view, sizeof u);
+    clouds.blend[0] = AMB_BLEND_ALPHA;
+    clouds.depth_write_off = true;
+    clouds.targets_off = ~1u;
+    if (status == AMB_OK && p->clouds > 0.0f)
+        status = amb_pass_draw(pass, &clouds, error);
+    if (status == AMB_OK && p->show_air)
+        status = planet_air_draw(pass, &u.air, error);
+    return status;
+}
+
+const planet_body WIDE(planet_earth) = {earth_load, earth_unload, earth_draw};
+
+static const amb_camera_key earth_keys[] = {
     {0.0f, {-0.35f, 0.45f, 2.95f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
     {12.0f, {-2.2f, 0.3f, 1.9f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
     {24.0f, {-1.28f, 0.42f, -0.35f}, {-0.35f, 0.62f, 1.0f}, {-0.5f, 0.85f, 0.0f}},
@@ -170,37 +198,12 @@ static const amb_camera_key earth_flight[] = {
     {60.0f, {-0.35f, 0.45f, 2.95f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
 };
 
-static amb_status earth_frame(const void *opaque, const amb_scene_job *job, amb_error *error)
-{
-    const earth_state *state = opaque;
-    const earth_params *p = job->params;
-    amb_canvas canvas;
-    amb_status status = canvas_begin(job, earth_aovs, EARTH_AOVS, p->planet.samples, &canvas, error);
-    if (status != AMB_OK)
-        return status;
-    earth_uniforms u = {.state = state, .params = p, .cloud_shell = 1.0f + p->cloud_height};
-    planet_view *view = &u.air.view;
-    *view = planet_view_at(&state->planet, &p->planet, job, &canvas, earth_flight,
-                           sizeof earth_flight / sizeof *earth_flight, 42.0f);
-    u.air.air = planet_atmosphere(&p->air, view->sun_rgb);
-    u.air.ground_gain = p->air.ground;
-    u.air.dome_gain = p->air.dome;
+static const planet_flight earth_flight = {earth_keys, sizeof earth_keys / sizeof *earth_keys, 42.0f};
 
-    amb_draw stars = planet_background_draw(view, sizeof u);
-    status = amb_pass_draw(canvas.pass, &stars, error);
-    amb_draw ground = planet_shell_draw("ground", planet_vertex, earth_ground, view, sizeof u);
-    if (status == AMB_OK)
-        status = amb_pass_draw(canvas.pass, &ground, error);
-    view->shell = u.cloud_shell;
-    amb_draw clouds = planet_shell_draw("clouds", planet_vertex, earth_clouds, view, sizeof u);
-    clouds.blend[0] = AMB_BLEND_ALPHA;
-    clouds.depth_write_off = true;
-    clouds.targets_off = ~1u;
-    if (status == AMB_OK && p->clouds > 0.0f)
-        status = amb_pass_draw(canvas.pass, &clouds, error);
-    if (status == AMB_OK && p->show_air)
-        status = planet_air_draw(canvas.pass, &u.air, error);
-    return canvas_finish(job, earth_aovs, &canvas, status, error);
+static amb_status earth_frame(const void *state, const amb_scene_job *job, amb_error *error)
+{
+    return planet_frame(&WIDE(planet_earth), earth_aovs, EARTH_AOVS, &earth_flight, planet_background_draw, state, job,
+                        error);
 }
 
 const amb_scene WIDE(amb_scene_earth) = {

@@ -73,12 +73,11 @@ static v3 turned_axis(float tilt, float turn, v3 axis)
 }
 
 planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,
-                           const amb_canvas *canvas, const amb_camera_key *keys, size_t key_count,
-                           float vertical_fov_degrees)
+                           const amb_canvas *canvas, const planet_flight *flight)
 {
     const float degree = AMB_PI / 180.0f;
-    float flight = planet_loop_time(job->time, keys[key_count - 1].time);
-    amb_camera camera = amb_camera_at(keys, key_count, flight, vertical_fov_degrees * degree, 0.01f, 100.0f,
+    float at = planet_loop_time(job->time, flight->keys[flight->key_count - 1].time);
+    amb_camera camera = amb_camera_at(flight->keys, flight->key_count, at, flight->vertical_fov * degree, 0.01f, 100.0f,
                                       canvas->width, canvas->height);
     float turn = params->turn * degree;
     if (params->day > 0.0f)
@@ -105,4 +104,29 @@ planet_view planet_view_at(const planet_state *state, const planet_params *param
             turned_axis(params->tilt * degree, turn, (v3){(float)(i == 0), (float)(i == 1), (float)(i == 2)});
     memcpy(view.slot, canvas->slot, sizeof view.slot);
     return view;
+}
+
+amb_status planet_load_maps(amb_assets *assets, const planet_map_name *maps, size_t count, amb_error *error)
+{
+    amb_status status = AMB_OK;
+    for (size_t i = 0; i < count && status == AMB_OK; i++)
+        status = amb_assets_texture(assets, maps[i].name, maps[i].map, error);
+    return status;
+}
+
+amb_status planet_frame(const planet_body *body, const amb_aov *aovs, size_t aov_count, const planet_flight *flight,
+                        amb_draw background, const void *state, const amb_scene_job *job, amb_error *error)
+{
+    const planet_params *params = job->params;
+    amb_canvas canvas;
+    amb_status status = canvas_begin(job, aovs, aov_count, params->samples, &canvas, error);
+    if (status != AMB_OK)
+        return status;
+    planet_view view = planet_view_at(state, params, job, &canvas, flight);
+    background.uniforms = &view;
+    background.uniforms_size = sizeof view;
+    status = amb_pass_draw(canvas.pass, &background, error);
+    if (status == AMB_OK)
+        status = body->draw(state, job->params, &view, job->time, canvas.pass, error);
+    return canvas_finish(job, aovs, &canvas, status, error);
 }

@@ -10,12 +10,13 @@
 #include <ambiance/texture.h>
 
 /* Outputs of every planet; a scene's own follow from PLANET_AOVS on. */
-enum { PLANET_POSITION, PLANET_NORMAL, PLANET_ALBEDO, PLANET_ID, PLANET_DEPTH, PLANET_AOVS };
+enum { PLANET_POSITION, PLANET_NORMAL, PLANET_ALBEDO, PLANET_ID, PLANET_DEPTH, PLANET_LIGHT, PLANET_AOVS };
 #define PLANET_AOV_ROWS                                                                                   \
     {"position", 3, "world position, planet radii"}, {"normal", 3, "world normal, unit, bumps included"}, \
         {"albedo", 3, "linear albedo"}, {"id", 1, "1 the planet, 2 its rings, 0 background"},             \
+        {"depth", 1, "0 near plane ... 1 far plane"},                                                     \
     {                                                                                                     \
-        "depth", 1, "0 near plane ... 1 far plane"                                                        \
+        "light", 3, "light on the surface before its albedo"                                              \
     }
 
 /* Parameters of every planet; the first member of each planet's parameter struct. */
@@ -28,65 +29,65 @@ typedef struct planet_params {
 } planet_params;
 #define PLANET_FIELD(type, name) offsetof(type, name)
 /* Rows for the table of a struct `type` whose first member is `planet`; defaults as given. */
-#define PLANET_PARAM_ROWS(type, azimuth, elevation, turn_at_0, seconds_a_turn, axis_tilt)                       \
-    {"sun_azimuth",                                                                                             \
-     AMB_PARAM_FLOAT,                                                                                           \
-     "degrees",                                                                                                 \
-     -360,                                                                                                      \
-     360,                                                                                                       \
-     {azimuth},                                                                                                 \
-     NULL,                                                                                                      \
-     offsetof(type, planet.sun_azimuth),                                                                        \
-     "where the sun is: 0 along +z, 90 along +x"},                                                              \
-        {"sun_elevation",                                                                                       \
-         AMB_PARAM_FLOAT,                                                                                       \
-         "degrees",                                                                                             \
-         -90,                                                                                                   \
-         90,                                                                                                    \
-         {elevation},                                                                                           \
-         NULL,                                                                                                  \
-         offsetof(type, planet.sun_elevation),                                                                  \
-         "its height over the plane of y = 0"},                                                                 \
-        {"turn",                                                                                                \
-         AMB_PARAM_FLOAT,                                                                                       \
-         "degrees",                                                                                             \
-         -360,                                                                                                  \
-         360,                                                                                                   \
-         {turn_at_0},                                                                                           \
-         NULL,                                                                                                  \
-         offsetof(type, planet.turn),                                                                           \
-         "turn of the planet about its axis at time 0"},                                                        \
-        {"day",                                                                                                 \
-         AMB_PARAM_FLOAT,                                                                                       \
-         "s",                                                                                                   \
-         0,                                                                                                     \
-         100000,                                                                                                \
-         {seconds_a_turn},                                                                                      \
-         NULL,                                                                                                  \
-         offsetof(type, planet.day),                                                                            \
-         "time of one turn; 0: it stands still"},                                                               \
-        {"tilt",                                                                                                \
-         AMB_PARAM_FLOAT,                                                                                       \
-         "degrees",                                                                                             \
-         -180,                                                                                                  \
-         180,                                                                                                   \
-         {axis_tilt},                                                                                           \
-         NULL,                                                                                                  \
-         offsetof(type, planet.tilt),                                                                           \
-         "of the axis toward +x"},                                                                              \
-        {"exposure",                                                                                            \
-         AMB_PARAM_FLOAT,                                                                                       \
-         "",                                                                                                    \
-         0,                                                                                                     \
-         100,                                                                                                   \
-         {1},                                                                                                   \
-         NULL,                                                                                                  \
-         offsetof(type, planet.exposure),                                                                       \
-         "factor on the sun's light"},                                                                          \
+#define PLANET_PARAM_ROWS(type, azimuth, elevation, turn_at_0, seconds_a_turn, axis_tilt)                          \
+    {"sun_azimuth",                                                                                                \
+     AMB_PARAM_FLOAT,                                                                                              \
+     "degrees",                                                                                                    \
+     -360,                                                                                                         \
+     360,                                                                                                          \
+     {azimuth},                                                                                                    \
+     NULL,                                                                                                         \
+     offsetof(type, planet.sun_azimuth),                                                                           \
+     "where the sun is: 0 along +z, 90 along +x"},                                                                 \
+        {"sun_elevation",                                                                                          \
+         AMB_PARAM_FLOAT,                                                                                          \
+         "degrees",                                                                                                \
+         -90,                                                                                                      \
+         90,                                                                                                       \
+         {elevation},                                                                                              \
+         NULL,                                                                                                     \
+         offsetof(type, planet.sun_elevation),                                                                     \
+         "its height over the plane of y = 0"},                                                                    \
+        {"turn",                                                                                                   \
+         AMB_PARAM_FLOAT,                                                                                          \
+         "degrees",                                                                                                \
+         -360,                                                                                                     \
+         360,                                                                                                      \
+         {turn_at_0},                                                                                              \
+         NULL,                                                                                                     \
+         offsetof(type, planet.turn),                                                                              \
+         "turn of the planet about its axis at time 0"},                                                           \
+        {"day",                                                                                                    \
+         AMB_PARAM_FLOAT,                                                                                          \
+         "s",                                                                                                      \
+         0,                                                                                                        \
+         100000,                                                                                                   \
+         {seconds_a_turn},                                                                                         \
+         NULL,                                                                                                     \
+         offsetof(type, planet.day),                                                                               \
+         "time of one turn; 0: it stands still"},                                                                  \
+        {"tilt",                                                                                                   \
+         AMB_PARAM_FLOAT,                                                                                          \
+         "degrees",                                                                                                \
+         -180,                                                                                                     \
+         180,                                                                                                      \
+         {axis_tilt},                                                                                              \
+         NULL,                                                                                                     \
+         offsetof(type, planet.tilt),                                                                              \
+         "of the axis toward +x"},                                                                                 \
+        {"exposure",                                                                                               \
+         AMB_PARAM_FLOAT,                                                                                          \
+         "",                                                                                                       \
+         0,                                                                                                        \
+         100,                                                                                                      \
+         {3.0f},                                                                                                   \
+         NULL,                                                                                                     \
+         offsetof(type, planet.exposure),                                                                          \
+         "factor on the sun's light"},                                                                             \
         {"stars", AMB_PARAM_FLOAT, "", 0, 100, {0.4f}, NULL, offsetof(type, planet.stars), "factor on the stars"}, \
-    {                                                                                                           \
-        "samples", AMB_PARAM_INT, "", 1, CANVAS_MAX_FACTOR, {2}, NULL, offsetof(type, planet.samples),          \
-            "samples along a pixel's side"                                                                      \
+    {                                                                                                              \
+        "samples", AMB_PARAM_INT, "", 1, CANVAS_MAX_FACTOR, {2}, NULL, offsetof(type, planet.samples),             \
+            "samples along a pixel's side"                                                                         \
     }
 
 /* How one frame sees a planet: the first member of every planet shader's uniforms. */
@@ -118,10 +119,38 @@ void planet_unload(planet_state *state);
 amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
                                  const amb_normal_map_options *options, amb_texture **out, amb_error *error);
 
+/* A body that scenes draw: its own scene, and the tour. State and parameter structs start with planet_state and
+ * planet_params. */
+typedef struct planet_body {
+    amb_status (*load)(const amb_context *context, amb_assets *assets, void **state, amb_error *error);
+    void (*unload)(void *state);
+    /* Records everything but the background; `view` is the body's own: it is at the origin, its radius 1. */
+    amb_status (*draw)(const void *state, const void *params, const planet_view *view, double time, amb_pass *pass,
+                       amb_error *error);
+} planet_body;
+
+/* A flight around one body. */
+typedef struct planet_flight {
+    const amb_camera_key *keys;
+    size_t key_count;
+    float vertical_fov; /* degrees */
+} planet_flight;
+
+/* The whole of a one-body scene's frame: canvas, background by `background` (a full-screen draw whose uniforms are a
+ * planet_view), the body. */
+amb_status planet_frame(const planet_body *body, const amb_aov *aovs, size_t aov_count, const planet_flight *flight,
+                        amb_draw background, const void *state, const amb_scene_job *job, amb_error *error);
+
+/* Several assets at once. */
+typedef struct planet_map_name {
+    const char *name;
+    const amb_texture **map;
+} planet_map_name;
+amb_status planet_load_maps(amb_assets *assets, const planet_map_name *maps, size_t count, amb_error *error);
+
 /* The view of one frame; the camera flies `keys`, over and over from their last time on. */
 planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,
-                           const amb_canvas *canvas, const amb_camera_key *keys, size_t key_count,
-                           float vertical_fov_degrees);
+                           const amb_canvas *canvas, const planet_flight *flight);
 
 /* `time` folded into [0, period). */
 float planet_loop_time(double time, float period);

@@ -139,18 +139,13 @@ AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(light, f_set(1.0f));
 }
 
-/* A full-screen draw of the background; only colour is written. */
-AMB_INLINE amb_draw planet_background_draw(const planet_view *view, size_t uniforms_size)
-{
-    return (amb_draw){.label = "stars",
-                      .lanes = AMB_LANES,
-                      .fragment = planet_background,
-                      .uniforms = view,
-                      .uniforms_size = uniforms_size,
-                      .depth_compare = AMB_ALWAYS,
-                      .depth_write_off = true,
-                      .targets_off = ~1u};
-}
+/* A full-screen draw of the background for planet_frame; only colour is written. */
+static const amb_draw planet_background_draw = {.label = "stars",
+                                                .lanes = AMB_LANES,
+                                                .fragment = planet_background,
+                                                .depth_compare = AMB_ALWAYS,
+                                                .depth_write_off = true,
+                                                .targets_off = ~1u};
 
 /* A draw of one shell; the caller sets shaders' uniforms, blending and what differs. */
 AMB_INLINE amb_draw planet_shell_draw(const char *label, amb_vertex_shader vertex, amb_fragment_shader fragment,

@@ -4,9 +4,7 @@
 
 #include <string.h>
 
-#define SCENES(X) \
-    X(earth)      \
-    X(lucy)
+#define SCENES(X) X(venus) X(earth) X(mars) X(pluto) X(lucy)
 
 #if defined(__x86_64__)
 #define DECLARE(name) extern const amb_scene amb_scene_##name##_x4, amb_scene_##name##_x8, amb_scene_##name##_x16;
