@@ -1,5 +1,7 @@
 #include "scenes/planet.h"
 
+#include "shade/color.h"
+
 #include <ambiance/math.h>
 
 #include <stdlib.h>
@@ -16,43 +18,55 @@ amb_status planet_load(amb_assets *assets, planet_state *state, amb_error *error
 
 void planet_unload(planet_state *state) { amb_mesh_close(&state->sphere); }
 
-/* Level 0 as a planar image: a look-up at every texel's centre. */
-static amb_status texture_image(const amb_texture *texture, amb_image **out, amb_error *error)
+typedef struct normal_rows {
+    const amb_texture *texture;
+    amb_image *height, *normals;
+} normal_rows;
+
+/* Level 0 of the texture as heights: a look-up at every texel's centre. */
+static void height_row(void *user, int y, int thread)
 {
+    (void)thread;
     static const amb_sampler nearest = {.filter = AMB_NEAREST};
-    amb_texture_info info = amb_texture_describe(texture);
-    amb_status status = amb_image_create(info.width, info.height, 3, out, error);
-    if (status != AMB_OK)
-        return status;
-    for (int y = 0; y < info.height; y++)
-        for (int x = 0; x < info.width; x++) {
-            v2x uv = {((float)x + 0.5f) / (float)info.width, ((float)y + 0.5f) / (float)info.height};
-            v4x texel = amb_sample_2d_lod(texture, &nearest, uv, 0.0f);
-            bool one_channel =
-                info.texel == AMB_TEXEL_R8 || info.texel == AMB_TEXEL_R16F || info.texel == AMB_TEXEL_R32F;
-            amb_image_row(*out, 0, y)[x] = texel.x;
-            amb_image_row(*out, 1, y)[x] = one_channel ? texel.x : texel.y;
-            amb_image_row(*out, 2, y)[x] = one_channel ? texel.x : texel.z;
-        }
-    return AMB_OK;
+    const normal_rows *job = user;
+    amb_texture_info info = amb_texture_describe(job->texture);
+    bool one_channel = info.texel == AMB_TEXEL_R8 || info.texel == AMB_TEXEL_R16F || info.texel == AMB_TEXEL_R32F;
+    float *row = amb_image_row(job->height, 0, y);
+    for (int x = 0; x < info.width; x++) {
+        v2x uv = {((float)x + 0.5f) / (float)info.width, ((float)y + 0.5f) / (float)info.height};
+        v4x texel = amb_sample_2d_lod(job->texture, &nearest, uv, 0.0f);
+        row[x] = one_channel ? texel.x : color_luminance(v4x_xyz(texel));
+    }
+}
+
+static void code_row(void *user, int y, int thread)
+{
+    (void)thread;
+    const normal_rows *job = user;
+    for (int c = 0; c < 3; c++) {
+        float *row = amb_image_row(job->normals, c, y);
+        for (int x = 0; x < job->normals->width; x++)
+            row[x] = row[x] * 0.5f + 0.5f;
+    }
 }
 
 amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
                                  const amb_normal_map_options *options, amb_texture **out, amb_error *error)
 {
-    amb_image *image = NULL, *normals = NULL;
+    normal_rows job = {.texture = height};
+    amb_texture_info info = amb_texture_describe(height);
     *out = NULL;
-    amb_status status = texture_image(height, &image, error);
-    if (status == AMB_OK)
-        status = amb_normal_map_make(context, image, options, &normals, error);
+    amb_status status = amb_image_create(info.width, info.height, 1, &job.height, error);
     if (status == AMB_OK) {
-        size_t count = normals->stride * (size_t)normals->height * 3;
-        for (size_t i = 0; i < count; i++)
-            normals->data[i] = normals->data[i] * 0.5f + 0.5f;
-        status = amb_texture_from_image(normals, AMB_TEXEL_RGBA8, true, out, error);
+        amb_parallel_for(context, info.height, height_row, &job);
+        status = amb_normal_map_make(context, job.height, options, &job.normals, error);
     }
-    amb_image_close(&image);
-    amb_image_close(&normals);
+    if (status == AMB_OK) {
+        amb_parallel_for(context, info.height, code_row, &job);
+        status = amb_texture_from_image(job.normals, AMB_TEXEL_RGBA16F, true, out, error);
+    }
+    amb_image_close(&job.height);
+    amb_image_close(&job.normals);
     return status;
 }
 

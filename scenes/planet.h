@@ -115,7 +115,7 @@ typedef struct planet_state {
 amb_status planet_load(amb_assets *assets, planet_state *state, amb_error *error);
 void planet_unload(planet_state *state);
 
-/* A normal map (RGBA8, coded, z out) from the first channel or the luminance of level 0 of a texture. */
+/* A normal map (RGBA16F, coded, z out) from the first channel or the luminance of level 0 of a texture. */
 amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
                                  const amb_normal_map_options *options, amb_texture **out, amb_error *error);
 

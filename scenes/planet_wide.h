@@ -43,18 +43,20 @@ typedef struct planet_point {
     v2x uv, uv_dx, uv_dy;      /* and their change to the next pixel; no seam at ±180° */
 } planet_point;
 
-/* u = 0.5 + atan2(x, -z)/2π, v = acos(y)/π of the unit direction d, with the analytic gradient for a change of d. */
+/* Of the unit direction d: u = 0.5 - atan2(x, -z)/2π, growing eastward (to the right for an observer outside, north
+ * up), v = acos(y)/π. */
 AMB_INLINE v2x planet_uv(v3x d)
 {
-    v2x uv = {0.5f + f_atan2(d.x, -d.z) * (0.5f * AMB_INV_PI),
+    v2x uv = {0.5f - f_atan2(d.x, -d.z) * (0.5f * AMB_INV_PI),
               f_acos(f_clamp(d.y, f_set(-1.0f), f_set(1.0f))) * AMB_INV_PI};
     return uv;
 }
+/* Its gradient for a change of d, as if a texel were everywhere as wide as at the equator: without a seam at ±180° and
+ * without a pole. Toward the poles maps are stretched along u and hold no detail there that filtering must remove. */
 AMB_INLINE v2x planet_uv_change(v3x d, v3x change)
 {
-    f32x across2 = f_max(d.x * d.x + d.z * d.z, f_set(1.0e-8f));
-    v2x uv = {(d.x * change.z - d.z * change.x) / across2 * (0.5f * AMB_INV_PI),
-              -change.y / f_sqrt(across2) * AMB_INV_PI};
+    f32x across = f_sqrt(f_max(d.x * d.x + d.z * d.z, f_set(1.0e-12f)));
+    v2x uv = {(d.z * change.x - d.x * change.z) / across * (0.5f * AMB_INV_PI), -change.y / across * AMB_INV_PI};
     return uv;
 }
 
@@ -67,9 +69,9 @@ AMB_INLINE planet_point planet_point_of(const planet_view *view, v3x world)
     p.normal = v3x_normalize(planet_to_world(view, v3x_mul(d, v3x_splat(inverse))));
     p.to_eye = v3x_normalize(v3x_sub(v3x_splat(view->eye), world));
     f32x across = f_sqrt(f_max(d.x * d.x + d.z * d.z, f_set(1.0e-12f)));
-    v3x east = {-d.z / across, f_set(0.0f), d.x / across};
+    v3x east = {d.z / across, f_set(0.0f), -d.x / across};
     p.east = planet_to_world(view, east);
-    p.south = v3x_normalize(v3x_cross(p.normal, p.east));
+    p.south = v3x_normalize(v3x_cross(p.east, p.normal));
     p.uv = planet_uv(d);
 #if AMB_LANES > 1
     p.uv_dx = planet_uv_change(d, (v3x){f_ddx(d.x), f_ddx(d.y), f_ddx(d.z)});
@@ -122,10 +124,11 @@ AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
     v3x ray = v3x_add(v3x_splat(view->ray_origin),
                       v3x_add(v3x_scale(v3x_splat(view->ray_dx), in->x), v3x_scale(v3x_splat(view->ray_dy), in->y)));
     v3x d = v3x_normalize(ray);
-    planet_point p = {.uv = planet_uv(d)};
+    v3x sky = {-d.x, d.y, d.z}; /* seen from inside, east is to the left */
+    planet_point p = {.uv = planet_uv(sky)};
 #if AMB_LANES > 1
-    p.uv_dx = planet_uv_change(d, (v3x){f_ddx(d.x), f_ddx(d.y), f_ddx(d.z)});
-    p.uv_dy = planet_uv_change(d, (v3x){f_ddy(d.x), f_ddy(d.y), f_ddy(d.z)});
+    p.uv_dx = planet_uv_change(sky, (v3x){f_ddx(sky.x), f_ddx(sky.y), f_ddx(sky.z)});
+    p.uv_dy = planet_uv_change(sky, (v3x){f_ddy(sky.x), f_ddy(sky.y), f_ddy(sky.z)});
 #else
     p.uv_dx = p.uv_dy = (v2x){0.0f, 0.0f};
 #endif
