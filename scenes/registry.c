@@ -4,7 +4,15 @@
 
 #include <string.h>
 
-#define SCENES(X) X(venus) X(earth) X(mars) X(pluto) X(lucy)
+/* clang-format off */
+#define SCENES(X) \
+    X(mercury)    \
+    X(venus)      \
+    X(earth)      \
+    X(mars)       \
+    X(pluto)      \
+    X(lucy)
+/* clang-format on */
 
 #if defined(__x86_64__)
 #define DECLARE(name) extern const amb_scene amb_scene_##name##_x4, amb_scene_##name##_x8, amb_scene_##name##_x16;

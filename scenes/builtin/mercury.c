@@ -6,7 +6,7 @@
 #include <ambiance/random.h>
 #include <stdlib.h>
 
-enum { MAP_WIDTH = 4096, MAP_HEIGHT = 2048, CRATERS = 60000, RAY_CRATERS = 26 };
+enum { MAP_WIDTH = 4096, MAP_HEIGHT = 2048, CRATERS = 60000, RAY_CRATERS = 34 };
 
 AMB_DECLARE_WIDE(void, amb_mercury_row, (void *user, int y, int thread));
 
@@ -53,13 +53,13 @@ static amb_crater ray_crater(uint32_t i)
     float size = draw(id, 2);
     amb_crater c = {.radius = 0.006f + 0.016f * size * size, .seed = 61.0f * draw(id, 3)};
     place(&c, id);
-    c.reach = 10.0f + 10.0f * draw(id, 4);
+    c.reach = 9.0f + 18.0f * draw(id, 4) * draw(id, 6);
     c.depth = 0.10f;
     c.rim = 0.09f;
     c.floor = 0.3f;
     c.peak = 0.05f;
-    c.fresh = 0.22f;
-    c.rays = 0.16f + 0.16f * draw(id, 5);
+    c.fresh = 0.30f;
+    c.rays = 0.20f + 0.22f * draw(id, 5);
     return c;
 }
 

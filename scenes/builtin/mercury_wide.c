@@ -21,7 +21,7 @@ AMB_INLINE v3x direction_at(const row_frame *row, int x)
 /* Old rolling highlands, smooth bright plains, dark patches; and rubble down to the texel. */
 AMB_INLINE void plains(v3x p, f32x *relief, f32x *brightness)
 {
-    amb_fbm broad = {5, 2.0f, 0.55f}, rubble = {4, 2.0f, 0.62f};
+    amb_fbm broad = {4, 2.0f, 0.55f}, rubble = {4, 2.0f, 0.62f};
     v3x q = v3x_scale(p, f_set(1.7f));
     f32x patches = fbm3(noise_gradient3, q, (amb_lattice){.seed = 11}, broad).value;
     f32x hills = fbm3(noise_gradient3, v3x_scale(p, f_set(24.0f)), (amb_lattice){.seed = 23}, rubble).value;
@@ -29,7 +29,7 @@ AMB_INLINE void plains(v3x p, f32x *relief, f32x *brightness)
         fbm3(noise_gradient3, v3x_scale(p, f_set(340.0f)), (amb_lattice){.seed = 37}, (amb_fbm){2, 2.0f, 0.7f}).value;
     f32x smooth = f_smoothstep(f_set(0.02f), f_set(0.32f), patches); /* lava plains have little relief */
     *relief = (hills * 0.030f + grit * 0.017f) * (1.0f - 0.6f * smooth);
-    *brightness = patches * 0.085f + smooth * 0.03f + hills * 0.012f;
+    *brightness = patches * 0.14f + smooth * 0.03f + hills * 0.012f;
 }
 
 /* ---- craters ---------------------------------------------------------------------------------------------------- */
@@ -41,7 +41,7 @@ AMB_INLINE f32x ray_pattern(const amb_crater *c, f32x t, f32x a, f32x b)
     f32x wide = noise_gradient3(around, (amb_lattice){.seed = 3}).value;
     v3x finer = v3x_of(a * 11.0f, b * 11.0f, t * 0.22f + c->seed);
     f32x fine = noise_gradient3(finer, (amb_lattice){.seed = 5}).value;
-    f32x streak = f_smoothstep(f_set(0.02f), f_set(0.75f), wide * 1.1f + fine * 0.75f);
+    f32x streak = f_smoothstep(f_set(-0.05f), f_set(0.62f), wide * 1.1f + fine * 0.75f);
     f32x fade = f_saturate((c->reach - t) * (1.0f / c->reach));
     return streak * fade * fade * f_saturate(t - 0.9f);
 }

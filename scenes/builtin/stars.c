@@ -27,7 +27,7 @@ static v3 black_body(float kelvin)
     return v3_of(f_max(rgb.x, 0.0f), f_max(rgb.y, 0.0f), f_max(rgb.z, 0.0f));
 }
 
-/* Star i. Fluxes follow a power law, N(>F) ∝ F^-1.2, a little flatter than evenly spread stars would give (-1.5): the
+/* Star i. Fluxes follow a power law, N(>F) ∝ F^-1.15, a little flatter than evenly spread stars would give (-1.5): the
  * galaxy ends. Two in five lie along it. */
 static amb_star star_of(uint32_t i)
 {
@@ -38,7 +38,7 @@ static amb_star star_of(uint32_t i)
         height = (draw(i, 6) + draw(i, 7) - 1.0f) * 0.30f;
     float r = f_sqrt(1.0f - height * height);
     v3 plane = v3_add(v3_scale(east, amb_cos(longitude)), v3_scale(north, amb_sin(longitude)));
-    float flux = f_min(0.030f * amb_pow(1.0f - draw(i, 3), -1.0f / 1.2f), 40.0f);
+    float flux = f_min(0.045f * amb_pow(1.0f - draw(i, 3), -1.0f / 1.15f), 150.0f);
     float kelvin = 3300.0f * amb_pow(3.6f, draw(i, 4) * 0.6f + draw(i, 5) * 0.4f);
     return (amb_star){v3_normalize(v3_add(v3_scale(plane, r), v3_scale(pole, height))),
                       v3_scale(black_body(kelvin), flux)};
@@ -81,7 +81,7 @@ static uint32_t *list_by_row(const amb_star_map *map, uint32_t *first)
 amb_status amb_builtin_stars(const amb_context *context, amb_texture **out, amb_error *error)
 {
     amb_status status = AMB_OK;
-    amb_star_map map = {.width = MAP_WIDTH, .height = MAP_HEIGHT, .blur = 0.75f * AMB_PI / (float)MAP_HEIGHT};
+    amb_star_map map = {.width = MAP_WIDTH, .height = MAP_HEIGHT, .blur = 0.56f * AMB_PI / (float)MAP_HEIGHT};
     size_t bytes = (size_t)MAP_WIDTH * MAP_HEIGHT * 8, threads = (size_t)amb_context_threads(context);
     amb_star *star = calloc(STARS, sizeof *star);
     uint32_t *first = calloc(MAP_HEIGHT + 1, sizeof *first), *list = NULL;

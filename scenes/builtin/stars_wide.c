@@ -38,7 +38,7 @@ AMB_INLINE v3x milky_way(v3x p)
         v3x_lerp(v3x_splat(v3_of(0.62f, 0.74f, 1.0f)), v3x_splat(v3_of(1.0f, 0.80f, 0.56f)), f_saturate(core * 1.3f));
     v3x reddened = v3x_of(through, through * (0.55f + 0.45f * through), through * (0.30f + 0.70f * through));
     f32x fades = f_saturate((0.75f - f_abs(latitude)) * 4.0f);
-    return v3x_scale(v3x_mul(tint, reddened), band * fades * 0.055f);
+    return v3x_scale(v3x_mul(tint, reddened), band * fades * 0.10f);
 }
 
 /* Adds a Gaussian spot where it is above 1e-4 of its middle. */
