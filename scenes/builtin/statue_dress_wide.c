@@ -75,17 +75,17 @@ f32x statue_dress(v3x p)
     f32x fall = f_saturate((0.70f - y) * (1.0f / 0.70f));
     f32x floor = f_max(1.0f - y * 16.0f, f_set(0.0f));
     f32x drift = 0.6f * f_sin(2.0f * angle + 4.0f * y) + 0.4f * f_sin(6.0f * y + angle);
-    f32x first = pipes(10.0f * angle + 2.2f * drift + 1.4f * f_sin(3.0f * angle + 1.0f), 0.10f);
-    f32x second = pipes(21.0f * angle + 3.0f * drift + 2.2f * f_sin(2.0f * angle - 6.0f * y), 0.12f);
-    f32x height = first * (0.004f + 0.030f * fall * fall) + second * (0.002f + 0.006f * fall);
+    f32x first = pipes(10.0f * angle + 2.2f * drift + 1.4f * f_sin(3.0f * angle + 1.0f), 0.2f);
+    f32x second = pipes(21.0f * angle + 3.0f * drift + 2.2f * f_sin(2.0f * angle - 6.0f * y), 0.3f);
+    f32x height = first * (0.005f + 0.033f * fall * fall) + second * (0.002f + 0.006f * fall);
     height = height + floor * floor * 0.022f * (0.4f + first);
     f32x gown = (body - (height - 0.012f * fall) * (0.12f + 0.88f * taut)) * 0.7f;
     gown = f_max(gown, y - 0.69f);
     /* Overfold: a second layer from the belt over the hips, with a falling zigzag edge. */
     f32x drop = f_saturate((0.70f - y) * 4.0f);
     f32x wander = 2.2f * f_sin(2.0f * angle + 5.0f * y) + 0.8f * f_sin(5.0f * angle + 9.0f * y);
-    f32x over_pipes = pipes(12.0f * angle + wander + 1.0f, 0.10f);
-    f32x over = body - (0.002f + 0.009f * drop + over_pipes * (0.003f + 0.011f * drop));
+    f32x over_pipes = pipes(12.0f * angle + wander + 1.0f, 0.2f);
+    f32x over = body - (0.002f + 0.009f * drop + over_pipes * (0.004f + 0.013f * drop));
     f32x edge = 0.47f + 0.035f * f_cos(angle * 2.0f + 0.6f) + 0.025f * f_sin(angle) -
                 (0.022f + 0.012f * f_sin(3.0f * angle + 0.5f)) * over_pipes;
     over = sdf_smooth_intersect(over * 0.75f, sdf_smooth_intersect(y - 0.69f, (edge - y) * 0.5f, 0.004f), 0.003f);

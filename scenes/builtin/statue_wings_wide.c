@@ -41,7 +41,7 @@ f32x statue_wings(const statue_model *model, v3x p)
         f32x du = u - f->center_u, dv = y - f->center_v, reach = f_max(d + f->reach, f_set(0.0f));
         maskx near = (du * du + dv * dv) + w * w < reach * reach;
         if (m_any(near))
-            d = f_sel(near, sdf_smooth_union(d, feather_distance(f, u, y, w), 0.0035f), d);
+            d = f_sel(near, sdf_smooth_union(d, feather_distance(f, u, y, w), 0.005f), d);
     }
     return d * 0.8f;
 }
