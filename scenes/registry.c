@@ -11,8 +11,8 @@
     X(earth)      \
     X(mars)       \
     X(pluto)      \
+    X(julia)      \
     X(lucy)
-/* clang-format on */
 
 #if defined(__x86_64__)
 #define DECLARE(name) extern const amb_scene amb_scene_##name##_x4, amb_scene_##name##_x8, amb_scene_##name##_x16;

@@ -1,0 +1,127 @@
+/* The quaternion Julia set of z² + c, cut by the three-dimensional space of quaternions without a k part: distance,
+ * gradient and orbit trap, lanes-wide.
+ *
+ * Under z → z² + c the imaginary part of z never leaves the plane spanned by the imaginary parts of c and of the
+ * starting point, and squaring does not care how that plane lies. So three numbers carry the orbit: the real part x,
+ * the part y along c's imaginary axis, and the part w across it: x ← x² - y² - w² + Re c     y ← 2xy + |Im c|     w ←
+ * 2xw and |z'| follows z' ← 2 z z' (the seed's "+ 1" belongs to the Mandelbrot set).
+ *
+ * Distance: the seed's d = |z| log|z| / |z'| is G / |grad G| of the potential G = log|z| / 2ⁿ, an estimate that may be
+ * too long. For a connected complex Julia set the distance is at least ½ · ½(1 - e^(-2G)) / |grad G| (from Koebe's ¼
+ * theorem; J. C. Hart, D. J. Sandin, L. H. Kauffman, "Ray tracing deterministic 3-D fractals", SIGGRAPH 1989, take it
+ * over to quaternions), hence the factor ½, the usual one, which is all that is left near the set where G → 0. Instead
+ * of the exponential we take G / (1 + G + G²/3), which never exceeds it. That no step overshoots a quaternion set is
+ * shown by test_julia.c, which marches in fine steps.
+ */
+#ifndef AMB_SCENES_JULIA_H
+#define AMB_SCENES_JULIA_H
+
+#include <ambiance/math.h>
+#include <ambiance/vec.h>
+
+#define JULIA_ESCAPE 64.0f /* |z|² of escape: from here on log|z| / 2ⁿ is the potential to about 1 % */
+
+typedef struct julia_set {
+    v4 c;        /* real, i, j, k */
+    v3 axis;     /* unit, along (c.y, c.z, c.w); i, j, k */
+    float along; /* |Im c| */
+    int iterations;
+    float radius; /* the set lies in the ball of this radius: (1 + √(1 + 4|c|)) / 2 */
+} julia_set;
+
+AMB_INLINE julia_set julia_make(v4 c, int iterations)
+{
+    v3 imaginary = {c.y, c.z, c.w};
+    float along = v3_length(imaginary);
+    v3 axis = along > 0.0f ? v3_scale(imaginary, 1.0f / along) : (v3){1.0f, 0.0f, 0.0f};
+    /* |z²+c| > |z| for |z|² - |c| > |z|: such points escape. */
+    float radius = 0.5f + 0.5f * __builtin_sqrtf(1.0f + 4.0f * v4_length(c));
+    return (julia_set){c, axis, along, iterations, radius * 1.0001f};
+}
+
+/* c along a smooth closed path through shapes worth seeing, once around in `period` seconds; any time. */
+v4 amb_julia_path(double time, double period);
+
+/* log √a for a ≥ JULIA_ESCAPE, at most 0.3 % too small and never too large: the exponent and, for the mantissa 1 + f,
+ * f + k·f(1 - f) ≤ log2(1 + f), with k the slope's difference at f = 1. */
+AMB_INLINE f32x julia_log(f32x a)
+{
+    f32x exponent = i_to_f((f_bits(a) >> 23) - 127);
+    f32x f = f_from_bits((f_bits(a) & 0x7fffff) | 0x3f800000) - 1.0f;
+    return (exponent + (f + 0.2786f * f * (1.0f - f))) * (0.5f * AMB_LN2);
+}
+
+/* z ← z² + c in (x, y, w²); xx = x², imaginary = y² + w², square = |z|², before and after. */
+#define JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square)                                         \
+    y = (x + x) * y + (set)->along, ww = ww * (4.0f * xx), x = (xx - imaginary) + (set)->c.x, xx = x * x, \
+    imaginary = y * y + ww, square = xx + imaginary
+
+/* Lower bound of the distance; 0 for points that stay bounded. `user` is a julia_set. */
+AMB_INLINE f32x julia_distance(v3x p, const void *user)
+{
+    const julia_set *set = user;
+    f32x x = p.x, y = p.y * set->axis.x + p.z * set->axis.y;
+    f32x ww = f_max((p.y * p.y + p.z * p.z) - y * y, f_set(0.0f)); /* w² */
+    f32x xx = x * x, imaginary = y * y + ww, square = xx + imaginary;
+    f32x last = square, slope = f_set(1.0f), scale = f_set(1.0f); /* |z|², |z'|², 2⁻ⁿ; kept from the escape on */
+    for (int i = 0; i < set->iterations; i += 2) {
+        /* Two at a time. A lane that has escaped runs on to infinity and NaN, which never compare as bounded again. */
+        maskx bounded = square <= JULIA_ESCAPE;
+        if (!m_any(bounded))
+            break;
+        f32x steeper = 16.0f * square;
+        JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square);
+        steeper = steeper * square;
+        JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square);
+        slope = f_sel(bounded, slope * steeper, slope);
+        scale = f_sel(bounded, scale * 0.25f, scale);
+        last = f_sel(bounded, square, last);
+    }
+    f32x log_z = julia_log(last), g = log_z * scale, far = 1.0f + g * (1.0f + g * (1.0f / 3.0f));
+    f32x d = (0.5f * log_z) * f_sqrt(last / (slope * (far * far)));
+    return f_sel(last <= JULIA_ESCAPE, f_set(0.0f), d);
+}
+
+typedef struct julia_surface {
+    v3x normal; /* unit, gradient of the potential */
+    f32x trap;  /* least |z|² of the orbit after the start: small in folds */
+} julia_surface;
+
+/* The analytic gradient of log|z| after the same iterations, by the orbit's Jacobian in (x, y, w). */
+AMB_INLINE julia_surface julia_surface_at(v3x p, const julia_set *set)
+{
+    f32x x = p.x, y = p.y * set->axis.x + p.z * set->axis.y;
+    v3x across = {p.y - y * set->axis.x, p.z - y * set->axis.y, y * -set->axis.z}; /* imaginary part off the axis */
+    f32x w = v3x_length(across);
+    v3x jx = {f_set(1.0f), f_set(0.0f), f_set(0.0f)}; /* d x / d (x, y, w) of the start */
+    v3x jy = {f_set(0.0f), f_set(1.0f), f_set(0.0f)}, jw = {f_set(0.0f), f_set(0.0f), f_set(1.0f)};
+    v3x gradient = {x, y, w};
+    f32x trap = f_set(1.0f);
+    maskx going = m_set(true);
+    for (int i = 0; i <= set->iterations; i++) {
+        f32x xx = x * x, yy = y * y, ww = w * w, square = xx + (yy + ww);
+        v3x g = v3x_add(v3x_add(v3x_scale(jx, x), v3x_scale(jy, y)), v3x_scale(jw, w)); /* grad |z|²/2 */
+        gradient = v3x_sel(going, g, gradient);
+        if (i > 0)
+            trap = f_sel(going, f_min(square, trap), trap);
+        going &= square <= JULIA_ESCAPE;
+        if (!m_any(going) || i == set->iterations)
+            break;
+        f32x x2 = x + x, y2 = y + y, w2 = w + w;
+        v3x nx = v3x_sub(v3x_sub(v3x_scale(jx, x2), v3x_scale(jy, y2)), v3x_scale(jw, w2));
+        jy = v3x_add(v3x_scale(jy, x2), v3x_scale(jx, y2));
+        jw = v3x_add(v3x_scale(jw, x2), v3x_scale(jx, w2));
+        jx = nx;
+        y = x2 * y + set->along;
+        w = x2 * w;
+        x = (xx - (yy + ww)) + set->c.x;
+    }
+    /* Back from (x, y, w) to space: y along the axis, w along the unit vector across it. */
+    f32x per_w = gradient.z / f_max(v3x_length(across), f_set(1e-20f));
+    v3x n = {gradient.x, gradient.y * set->axis.x + per_w * across.x, gradient.y * set->axis.y + per_w * across.y};
+    f32x largest = f_max(f_max(f_abs(n.x), f_abs(n.y)), f_abs(n.z));
+    n = v3x_scale(n, 1.0f / f_max(largest, f_set(FLT_MIN)));
+    return (julia_surface){v3x_normalize(n), trap};
+}
+
+#endif
