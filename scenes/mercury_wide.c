@@ -6,12 +6,14 @@
 
 #include <stdlib.h>
 
+extern const planet_body WIDE(planet_mercury);
+
 enum { SHOW_BEAUTY, SHOW_ALBEDO, SHOW_DIFFUSE, SHOW_NORMALS, SHOW_BUMP };
 static const char *const show_names[] = {"beauty", "albedo", "diffuse", "normals", "bump", NULL};
 
 typedef struct mercury_params {
     planet_params planet;
-    float wrap, contrast, bump, twilight, sun, sun_size, sun_glow, starlight, fov;
+    float wrap, contrast, bump, twilight, sun_size, sun_glow, starlight, fov;
     v3 tint;
     int show, show_planet;
 } mercury_params;
@@ -39,7 +41,6 @@ static const amb_param mercury_table[] = {
      NULL,
      FIELD(twilight),
      "how far, as a cosine, slopes past the terminator catch light"},
-    {"sun", AMB_PARAM_FLOAT, "", 0, 100, {3.4f}, NULL, FIELD(sun), "radiance of a white surface that faces the sun"},
     {"tint", AMB_PARAM_COLOR, "", 0, 4, {1, 1, 1}, NULL, FIELD(tint), "colour of the sunlight"},
     {"sun_size",
      AMB_PARAM_FLOAT,
@@ -50,7 +51,15 @@ static const amb_param mercury_table[] = {
      NULL,
      FIELD(sun_size),
      "radius of the sun's disc; Mercury sees 0.69 on average"},
-    {"sun_glow", AMB_PARAM_FLOAT, "", 0, 10000, {40}, NULL, FIELD(sun_glow), "radiance of the disc, relative to `sun`"},
+    {"sun_glow",
+     AMB_PARAM_FLOAT,
+     "",
+     0,
+     10000,
+     {40},
+     NULL,
+     FIELD(sun_glow),
+     "radiance of the disc, relative to white that faces the sun"},
     {"starlight", AMB_PARAM_FLOAT, "", 0, 1, {0.0015f}, NULL, FIELD(starlight), "light on the night side"},
     {"fov", AMB_PARAM_FLOAT, "degrees", 5, 120, {36}, NULL, FIELD(fov), "vertical field of view"},
     {"show",
@@ -84,20 +93,6 @@ typedef struct mercury_uniforms {
     const mercury_state *state;
     const mercury_params *params;
 } mercury_uniforms;
-
-/* Once around, along the terminator, into the shadow, past sunrise at the limb, and over the full day side. */
-static const amb_camera_key mercury_flight[] = {
-    {0.0f, {0.29f, 0.34f, 3.29f}, {0.16f, 0.02f, 0.0f}, {0.10f, 1.0f, 0.0f}},
-    {9.0f, {1.17f, 0.42f, 2.76f}, {0.26f, 0.04f, 0.0f}, {0.14f, 1.0f, 0.0f}},
-    {18.0f, {1.97f, 0.12f, 1.77f}, {0.30f, 0.08f, 0.25f}, {0.16f, 1.0f, 0.0f}},
-    {27.0f, {2.77f, -0.35f, 1.01f}, {0.10f, 0.05f, 0.15f}, {0.05f, 1.0f, 0.0f}},
-    {36.0f, {3.11f, -0.56f, -1.05f}, {-0.20f, 0.02f, 0.10f}, {0.0f, 1.0f, 0.0f}},
-    {43.0f, {2.25f, -0.50f, -2.68f}, {-0.05f, 0.0f, -0.05f}, {0.0f, 1.0f, 0.0f}},
-    {50.0f, {0.28f, -0.10f, -3.19f}, {-0.15f, 0.0f, 0.0f}, {-0.06f, 1.0f, 0.0f}},
-    {57.0f, {-2.20f, 0.35f, -1.72f}, {-0.10f, 0.0f, 0.10f}, {0.0f, 1.0f, 0.06f}},
-    {64.0f, {-2.86f, 0.50f, 1.65f}, {0.0f, 0.0f, 0.10f}, {0.0f, 1.0f, 0.0f}},
-    {72.0f, {0.29f, 0.34f, 3.29f}, {0.16f, 0.02f, 0.0f}, {0.10f, 1.0f, 0.0f}},
-};
 
 /* ---- shaders ---------------------------------------------------------------------------------------------------- */
 
@@ -138,6 +133,7 @@ static void mercury_ground(const amb_fs_in *in, amb_fs_out *out)
     }
     out->color[0] = v4x_of3(color, f_set(1.0f));
     planet_put_surface(&u->view, out, &p, normal, albedo, 1.0f);
+    planet_put(&u->view, out, PLANET_LIGHT, lit);
     planet_put(&u->view, out, MERCURY_DIFFUSE, factor);
     planet_put(&u->view, out, MERCURY_BUMP, m);
 }
@@ -180,6 +176,33 @@ static amb_status mercury_load(const amb_context *context, amb_assets *assets, v
     return AMB_OK;
 }
 
+static amb_status mercury_draw(const void *opaque, const void *params, const planet_view *view, double time,
+                               amb_pass *pass, amb_error *error)
+{
+    const mercury_params *p = params;
+    mercury_uniforms u = {.view = *view, .state = opaque, .params = p};
+    (void)time;
+    u.view.sun_rgb = v3_mul(view->sun_rgb, p->tint);
+    amb_draw ground = planet_shell_draw("ground", planet_vertex, mercury_ground, &u.view, sizeof u);
+    return p->show_planet ? amb_pass_draw(pass, &ground, error) : AMB_OK;
+}
+
+const planet_body WIDE(planet_mercury) = {mercury_load, mercury_unload, mercury_draw};
+
+/* Once around, along the terminator, into the shadow, past sunrise at the limb, and over the full day side. */
+static const amb_camera_key mercury_keys[] = {
+    {0.0f, {0.29f, 0.34f, 3.29f}, {0.16f, 0.02f, 0.0f}, {0.10f, 1.0f, 0.0f}},
+    {9.0f, {1.17f, 0.42f, 2.76f}, {0.26f, 0.04f, 0.0f}, {0.14f, 1.0f, 0.0f}},
+    {18.0f, {1.97f, 0.12f, 1.77f}, {0.30f, 0.08f, 0.25f}, {0.16f, 1.0f, 0.0f}},
+    {27.0f, {2.77f, -0.35f, 1.01f}, {0.10f, 0.05f, 0.15f}, {0.05f, 1.0f, 0.0f}},
+    {36.0f, {3.11f, -0.56f, -1.05f}, {-0.20f, 0.02f, 0.10f}, {0.0f, 1.0f, 0.0f}},
+    {43.0f, {2.25f, -0.50f, -2.68f}, {-0.05f, 0.0f, -0.05f}, {0.0f, 1.0f, 0.0f}},
+    {50.0f, {0.28f, -0.10f, -3.19f}, {-0.15f, 0.0f, 0.0f}, {-0.06f, 1.0f, 0.0f}},
+    {57.0f, {-2.20f, 0.35f, -1.72f}, {-0.10f, 0.0f, 0.10f}, {0.0f, 1.0f, 0.06f}},
+    {64.0f, {-2.86f, 0.50f, 1.65f}, {0.0f, 0.0f, 0.10f}, {0.0f, 1.0f, 0.0f}},
+    {72.0f, {0.29f, 0.34f, 3.29f}, {0.16f, 0.02f, 0.0f}, {0.10f, 1.0f, 0.0f}},
+};
+
 static amb_status mercury_frame(const void *opaque, const amb_scene_job *job, amb_error *error)
 {
     const mercury_state *state = opaque;
@@ -188,20 +211,19 @@ static amb_status mercury_frame(const void *opaque, const amb_scene_job *job, am
     amb_status status = canvas_begin(job, mercury_aovs, MERCURY_AOVS, p->planet.samples, &canvas, error);
     if (status != AMB_OK)
         return status;
-    mercury_uniforms u = {.state = state, .params = p};
-    u.view = planet_view_at(&state->planet, &p->planet, job, &canvas, mercury_flight,
-                            sizeof mercury_flight / sizeof *mercury_flight, p->fov);
-    u.view.sun_rgb = v3_mul(u.view.sun_rgb, v3_scale(p->tint, p->sun));
+    planet_flight flight = {mercury_keys, sizeof mercury_keys / sizeof *mercury_keys, p->fov};
+    planet_view view = planet_view_at(&state->planet, &p->planet, job, &canvas, &flight);
     float half_sine = amb_sin(0.5f * p->sun_size * (AMB_PI / 180.0f));
-    u.view.sun_size = 1.0f - 2.0f * half_sine * half_sine;
-    u.view.sun_glow = p->sun_glow;
+    view.sun_size = 1.0f - 2.0f * half_sine * half_sine; /* a cosine that keeps its digits */
+    view.sun_glow = p->sun_glow;
 
-    amb_draw stars = planet_background_draw(&u.view, sizeof u);
+    amb_draw background = planet_background_draw;
+    background.uniforms = &view;
+    background.uniforms_size = sizeof view;
     if (p->show == SHOW_BEAUTY)
-        status = amb_pass_draw(canvas.pass, &stars, error);
-    amb_draw ground = planet_shell_draw("ground", planet_vertex, mercury_ground, &u.view, sizeof u);
-    if (status == AMB_OK && p->show_planet)
-        status = amb_pass_draw(canvas.pass, &ground, error);
+        status = amb_pass_draw(canvas.pass, &background, error);
+    if (status == AMB_OK)
+        status = mercury_draw(state, p, &view, job->time, canvas.pass, error);
     return canvas_finish(job, mercury_aovs, &canvas, status, error);
 }
 
