@@ -14,6 +14,7 @@ typedef struct raster_test_uniforms {
     v4 offset;     /* of clip per instance */
     float discard; /* fragments with value.x below it are discarded (0: none) */
     float depth;   /* written by the depth-writing shader: depth · this */
+    int holes;     /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
 } raster_test_uniforms;
 
 typedef struct raster_test_shaders {
@@ -22,8 +23,13 @@ typedef struct raster_test_shaders {
     amb_fragment_shader value;       /* target 0: value; target 1: d value.x/dx, d/dy, x, y; target 2: ids, depth */
     amb_fragment_shader one;         /* target 0: 1, value.x */
     amb_fragment_shader write_depth; /* target 0: value; depth · uniforms.depth */
+    amb_fragment_shader coded;       /* targets: RASTER_TEST_CODE of primitive and channel */
+    amb_fragment_shader coded_depth; /* and depth: RASTER_TEST_CODE of the primitive and 9 */
     amb_fragment_shader screen;      /* target 0: x, y, depth, 1 */
 } raster_test_shaders;
+
+/* A small exact number of a primitive and a channel: -¼…1, without rounding. */
+#define RASTER_TEST_CODE(primitive, salt) ((((primitive)*37 + (salt)*11 + 5) & 31) * 0.0390625f - 0.25f)
 
 const raster_test_shaders *raster_test_shaders_of(amb_isa isa);
 

@@ -21,8 +21,7 @@ static void value(const amb_fs_in *in, amb_fs_out *out)
 #if AMB_LANES > 1
     out->color[1] = (v4x){f_ddx(v->x), f_ddy(v->x), in->x, in->y};
 #endif
-    out->color[2] =
-        (v4x){i_to_f(in->primitive), f_sel(in->front, f_set(1.0f), f_set(0.0f)), in->depth, f_set(1.0f)};
+    out->color[2] = (v4x){i_to_f(in->primitive), f_sel(in->front, f_set(1.0f), f_set(0.0f)), in->depth, f_set(1.0f)};
     if (u->discard > 0.0f)
         out->live &= v->x >= u->discard;
 }
@@ -46,8 +45,29 @@ static void screen(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = (v4x){in->x, in->y, in->depth, f_set(1.0f)};
 }
 
+static f32x code(i32x primitive, int salt)
+{
+    return i_to_f((primitive * 37 + (salt * 11 + 5)) & 31) * 0.0390625f - 0.25f;
+}
+
+static void coded(const amb_fs_in *in, amb_fs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    for (int i = 0; i < 2; i++)
+        out->color[i] = (v4x){code(in->primitive, 4 * i), code(in->primitive, 4 * i + 1),
+                              code(in->primitive, 4 * i + 2), code(in->primitive, 4 * i + 3)};
+    if (u->holes > 0)
+        out->live &= ((f_to_i(in->x) + f_to_i(in->y) * 2 + in->primitive) & 3) >= u->holes;
+}
+
+static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
+{
+    coded(in, out);
+    out->depth = code(in->primitive, 9);
+}
+
 const raster_test_shaders *raster_test_shaders_get(void)
 {
-    static const raster_test_shaders shaders = {AMB_LANES, vertex, value, one, write_depth, screen};
+    static const raster_test_shaders shaders = {AMB_LANES, vertex, value, one, write_depth, coded, coded_depth, screen};
     return &shaders;
 }

@@ -58,7 +58,7 @@ static bool random_triangle(fixture *f, double spread, double log_w)
         f->vertex[i].value = (v4){(float)uniform(-8, 8), (float)uniform(0, 1), (float)uniform(-1e4, 1e4), 3.25f};
         memcpy(clip[i], &f->vertex[i].clip, sizeof clip[i]);
     }
-    return truth_clip(clip, SIZE, SIZE, f->pieces) == 1 && truth_area(f->pieces) != 0;
+    return truth_clip(clip, SIZE, SIZE, 1, f->pieces) == 1 && truth_area(f->pieces) != 0;
 }
 
 static void draw(fixture *f)

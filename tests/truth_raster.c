@@ -52,7 +52,7 @@ static int64_t to_grid(float ndc, float scale, float offset)
     return (int64_t)rint((double)window * 256.0); /* ties to even */
 }
 
-int truth_clip(const float clip[3][4], int width, int height, truth_triangle out[7])
+int truth_clip(const float clip[3][4], int width, int height, int clip_depth, truth_triangle out[7])
 {
     double polygon[2][16][4];
     int count = 3;
@@ -62,7 +62,7 @@ int truth_clip(const float clip[3][4], int width, int height, truth_triangle out
                 return 0;
             polygon[0][i][k] = (double)clip[i][k];
         }
-    for (int plane = 0; plane < 6; plane++)
+    for (int plane = clip_depth ? 0 : 2; plane < 6; plane++)
         count = clip_polygon(polygon[plane % 2], count, polygon[(plane + 1) % 2], plane, width, height);
     int64_t x[16], y[16];
     for (int i = 0; i < count; i++) {
@@ -113,23 +113,128 @@ int truth_covers(const truth_triangle *t, int x, int y)
 
 static int64_t clamp(int64_t a, int64_t lo, int64_t hi) { return a < lo ? lo : a > hi ? hi : a; }
 
+void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user)
+{
+    if (truth_area(t) == 0)
+        return;
+    int64_t x0 = t->x[0], x1 = x0, y0 = t->y[0], y1 = y0;
+    for (int k = 1; k < 3; k++) {
+        x0 = t->x[k] < x0 ? t->x[k] : x0, x1 = t->x[k] > x1 ? t->x[k] : x1;
+        y0 = t->y[k] < y0 ? t->y[k] : y0, y1 = t->y[k] > y1 ? t->y[k] : y1;
+    }
+    int first_x = (int)clamp(x0 / 256 - 1, 0, width), last_x = (int)clamp(x1 / 256 + 1, -1, width - 1);
+    int first_y = (int)clamp(y0 / 256 - 1, 0, height), last_y = (int)clamp(y1 / 256 + 1, -1, height - 1);
+    for (int y = first_y; y <= last_y; y++)
+        for (int x = first_x; x <= last_x; x++)
+            if (truth_covers(t, x, y))
+                pixel(user, x, y);
+}
+
 void truth_draw(const float clip[3][4], int width, int height, void (*pixel)(void *user, int x, int y), void *user)
 {
     truth_triangle t[7];
-    int count = truth_clip(clip, width, height, t);
-    for (int i = 0; i < count; i++) {
-        if (truth_area(&t[i]) == 0)
-            continue;
-        int64_t x0 = t[i].x[0], x1 = x0, y0 = t[i].y[0], y1 = y0;
-        for (int k = 1; k < 3; k++) {
-            x0 = t[i].x[k] < x0 ? t[i].x[k] : x0, x1 = t[i].x[k] > x1 ? t[i].x[k] : x1;
-            y0 = t[i].y[k] < y0 ? t[i].y[k] : y0, y1 = t[i].y[k] > y1 ? t[i].y[k] : y1;
-        }
-        int first_x = (int)clamp(x0 / 256 - 1, 0, width), last_x = (int)clamp(x1 / 256 + 1, -1, width - 1);
-        int first_y = (int)clamp(y0 / 256 - 1, 0, height), last_y = (int)clamp(y1 / 256 + 1, -1, height - 1);
-        for (int y = first_y; y <= last_y; y++)
-            for (int x = first_x; x <= last_x; x++)
-                if (truth_covers(&t[i], x, y))
-                    pixel(user, x, y);
+    int count = truth_clip(clip, width, height, 1, t);
+    for (int i = 0; i < count; i++)
+        truth_fill(&t[i], width, height, pixel, user);
+}
+
+/* ---- lines and points ------------------------------------------------------------------------------------------- */
+
+/* Is the point (x, y) / by, relative to a pixel's centre, in its diamond? */
+static int in_diamond(__int128 x, __int128 y, __int128 by, int steep)
+{
+    __int128 half = 128 * by;
+    if (steep && y == 0 && x == half)
+        return 1;
+    return x + y <= half && y - x <= half && x - y < half && -x - y < half;
+}
+
+/* Does the way from a to b (relative to the centre) lead out of the diamond? The part inside is convex, so it is found
+ * at an end, at a crossing of a boundary line, or between two neighbouring ones of those. */
+static int leaves_diamond(int64_t ax, int64_t ay, int64_t bx, int64_t by)
+{
+    int64_t dx = bx - ax, dy = by - ay;
+    int steep = (dy < 0 ? -dy : dy) > (dx < 0 ? -dx : dx);
+    if (in_diamond(bx, by, 1, steep))
+        return 0;
+    const int signs[4][2] = {{1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+    int64_t top[6] = {0, 1}, bottom[6] = {1, 1};
+    int count = 2;
+    for (int i = 0; i < 4; i++) {
+        int64_t change = signs[i][0] * dx + signs[i][1] * dy, start = signs[i][0] * ax + signs[i][1] * ay;
+        int64_t need = 128 - start;
+        if (change < 0)
+            change = -change, need = -need;
+        if (change != 0 && need > 0 && need < change)
+            top[count] = need, bottom[count++] = change;
     }
+    for (int i = 0; i < count; i++)
+        for (int k = i; k < count; k++) { /* the middle of any two; i = k: the crossing itself */
+            __int128 t = (__int128)top[i] * bottom[k] + (__int128)top[k] * bottom[i];
+            __int128 whole = (__int128)2 * bottom[i] * bottom[k];
+            if (in_diamond(ax * whole + dx * t, ay * whole + dy * t, whole, steep))
+                return 1;
+        }
+    return 0;
+}
+
+void truth_draw_line(const float from[4], const float to[4], int width, int height, int clip_depth,
+                     void (*pixel)(void *user, int x, int y), void *user)
+{
+    double end[2][4];
+    for (int k = 0; k < 4; k++) {
+        if (!isfinite(from[k]) || !isfinite(to[k]))
+            return;
+        end[0][k] = (double)from[k], end[1][k] = (double)to[k];
+    }
+    for (int plane = clip_depth ? 0 : 2; plane < 6; plane++) {
+        double d[2] = {plane_distance(plane, end[0], width, height), plane_distance(plane, end[1], width, height)};
+        if (d[0] < 0 && d[1] < 0)
+            return;
+        for (int i = 0; i < 2; i++)
+            if (d[i] < 0)
+                for (int k = 0; k < 4; k++)
+                    end[i][k] = end[1 - i][k] + (end[i][k] - end[1 - i][k]) * (d[1 - i] / (d[1 - i] - d[i]));
+    }
+    int64_t x[2], y[2];
+    for (int i = 0; i < 2; i++) {
+        float c[4];
+        for (int k = 0; k < 4; k++)
+            c[k] = (float)end[i][k];
+        if (!(c[3] >= 0x1p-126f))
+            return;
+        x[i] = to_grid(c[0] / c[3], 0.5f * (float)width, 0.5f * (float)width);
+        y[i] = to_grid(c[1] / c[3], -0.5f * (float)height, 0.5f * (float)height);
+    }
+    for (int py = 0; py < height; py++)
+        for (int px = 0; px < width; px++) {
+            int64_t cx = 256 * (int64_t)px + 128, cy = 256 * (int64_t)py + 128;
+            if (leaves_diamond(x[0] - cx, y[0] - cy, x[1] - cx, y[1] - cy))
+                pixel(user, px, py);
+        }
+}
+
+void truth_draw_point(const float clip[4], float size, int width, int height, int clip_depth,
+                      void (*pixel)(void *user, int x, int y), void *user)
+{
+    double c[4];
+    for (int k = 0; k < 4; k++) {
+        if (!isfinite(clip[k]))
+            return;
+        c[k] = (double)clip[k];
+    }
+    for (int plane = clip_depth ? 0 : 2; plane < 6; plane++)
+        if (plane_distance(plane, c, width, height) < 0)
+            return;
+    if (!(clip[3] >= 0x1p-126f))
+        return;
+    int64_t x = to_grid(clip[0] / clip[3], 0.5f * (float)width, 0.5f * (float)width);
+    int64_t y = to_grid(clip[1] / clip[3], -0.5f * (float)height, 0.5f * (float)height);
+    int64_t half = (int64_t)rint((double)size * 128.0);
+    for (int py = 0; py < height; py++)
+        for (int px = 0; px < width; px++) {
+            int64_t cx = 256 * (int64_t)px + 128, cy = 256 * (int64_t)py + 128;
+            if (cx >= x - half && cx < x + half && cy >= y - half && cy < y + half)
+                pixel(user, px, py);
+        }
 }

@@ -10,13 +10,23 @@ typedef struct truth_triangle {
     double clip[3][4];
 } truth_triangle;
 
-/* Clips, projects and snaps; returns how many triangles came of it (at most 7; degenerate ones are among them). */
-int truth_clip(const float clip[3][4], int width, int height, truth_triangle out[7]);
+/* Clips, projects and snaps; returns how many triangles came of it (at most 7; degenerate ones are among them). With
+ * clip_depth 0 the near and far planes are left out. */
+int truth_clip(const float clip[3][4], int width, int height, int clip_depth, truth_triangle out[7]);
 /* Twice the area in (1/256 pixel)², positive when clockwise on the screen. */
 int64_t truth_area(const truth_triangle *t);
 /* Does the triangle own the centre of pixel (x, y)? */
 int truth_covers(const truth_triangle *t, int x, int y);
-/* Calls pixel() for every owned pixel of the window. */
+/* Calls pixel() for every pixel of the window that a snapped triangle owns. */
+void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user);
+/* Both of them, whatever way the pieces face. */
 void truth_draw(const float clip[3][4], int width, int height, void (*pixel)(void *user, int x, int y), void *user);
+
+/* A line by the diamond-exit rule, after clipping; with clip_depth 0 without the near and far planes. */
+void truth_draw_line(const float from[4], const float to[4], int width, int height, int clip_depth,
+                     void (*pixel)(void *user, int x, int y), void *user);
+/* A square of that many pixels about a vertex; nothing when the vertex is outside the clip volume. */
+void truth_draw_point(const float clip[4], float size, int width, int height, int clip_depth,
+                      void (*pixel)(void *user, int x, int y), void *user);
 
 #endif
