@@ -123,9 +123,9 @@ static void crater_row(const amb_crater *c, const row_frame *row, int width, flo
 /* Heights darken or brighten like the airless, dusty surface does: rims are fresh and bright, floors dark. */
 AMB_INLINE void texels_at(f32x relief, f32x brightness, unsigned char *to)
 {
-    f32x light = f_clamp(0.215f + brightness + relief * 0.95f, f_set(0.03f), f_set(0.9f));
+    f32x light = f_clamp(0.25f + brightness + relief * 0.95f, f_set(0.03f), f_set(0.9f));
     f32x fresh = f_smoothstep(f_set(0.04f), f_set(0.30f), brightness);
-    v3x warm = v3x_splat(v3_of(1.09f, 1.0f, 0.88f)), cool = v3x_splat(v3_of(1.0f, 1.0f, 0.985f));
+    v3x warm = v3x_splat(v3_of(1.10f, 0.985f, 0.885f)), cool = v3x_splat(v3_of(1.0f, 1.0f, 0.985f));
     v3x rgb = v3x_scale(v3x_lerp(warm, cool, fresh), light);
     f32x channel[3] = {rgb.x, rgb.y, rgb.z};
     for (int k = 0; k < 3; k++) {
