@@ -6,13 +6,19 @@
 
 /* clang-format off */
 #define SCENES(X) \
+    X(sun)        \
     X(mercury)    \
     X(venus)      \
     X(earth)      \
     X(mars)       \
+    X(jupiter)    \
+    X(saturn)     \
+    X(uranus)     \
+    X(neptune)    \
     X(pluto)      \
     X(julia)      \
     X(lucy)
+/* clang-format on */
 
 #if defined(__x86_64__)
 #define DECLARE(name) extern const amb_scene amb_scene_##name##_x4, amb_scene_##name##_x8, amb_scene_##name##_x16;

@@ -35,6 +35,11 @@ amb_status amb_builtin_mars_height(const amb_context *context, amb_texture **out
 amb_status amb_builtin_pluto_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_pluto_gloss(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_jupiter_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_jupiter_colour1(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_jupiter_colour2(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_jupiter_colour3(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_jupiter_colour4(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_jupiter_velocity(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_saturn_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_uranus_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_neptune_colour(const amb_context *context, amb_texture **out, amb_error *error);
@@ -43,6 +48,9 @@ amb_status amb_builtin_sun_colour(const amb_context *context, amb_texture **out,
  * b. */
 amb_status amb_builtin_saturn_rings(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_saturn_ring_scatter(const amb_context *context, amb_texture **out, amb_error *error);
+
+/* Uranus's nine narrow rings on the same scale: tint and opacity. */
+amb_status amb_builtin_uranus_rings(const amb_context *context, amb_texture **out, amb_error *error);
 
 /* A latitude-longitude panorama (its centre looks along -z, +x to the right) as an RGBA16F cube map of size² faces. */
 amb_status amb_panorama_to_cube(const amb_context *context, const amb_texture *panorama, int size, amb_texture **out,

@@ -99,3 +99,35 @@ amb_status amb_builtin_saturn_ring_scatter(const amb_context *context, amb_textu
     amb_image_close(&image);
     return status;
 }
+
+/* Radii in planet radii and widths of the nine main rings, the widths enlarged fivefold so that they show (J. L.
+ * Elliot, P. D. Nicholson, in: Planetary Rings, 1984). */
+amb_status amb_builtin_uranus_rings(const amb_context *context, amb_texture **out, amb_error *error)
+{
+    static const struct {
+        float radius, width, opacity;
+    } ring[] = {{1.637f, 0.003f, 0.35f}, {1.652f, 0.003f, 0.4f},  {1.666f, 0.003f, 0.4f},
+                {1.750f, 0.005f, 0.45f}, {1.786f, 0.006f, 0.45f}, {1.834f, 0.004f, 0.35f},
+                {1.863f, 0.004f, 0.5f},  {1.900f, 0.005f, 0.5f},  {2.006f, 0.011f, 0.85f}};
+    amb_image *image;
+    *out = NULL;
+    (void)context;
+    amb_status status = amb_image_create(RING_TEXELS, 1, 4, &image, error);
+    if (status != AMB_OK)
+        return status;
+    for (int x = 0; x < RING_TEXELS; x++) {
+        float radius = RINGS_INNER + (RINGS_OUTER - RINGS_INNER) * ((float)x + 0.5f) / RING_TEXELS, opacity = 0.012f;
+        for (size_t i = 0; i < sizeof ring / sizeof *ring; i++) {
+            float off = f_abs(radius - ring[i].radius);
+            opacity += ring[i].opacity * (1.0f - f_smoothstep(0.5f * ring[i].width, 0.8f * ring[i].width, off));
+        }
+        opacity = opacity * f_smoothstep(1.60f, 1.63f, radius) * (1.0f - f_smoothstep(2.03f, 2.06f, radius));
+        amb_image_row(image, 0, 0)[x] = 0.62f;
+        amb_image_row(image, 1, 0)[x] = 0.66f;
+        amb_image_row(image, 2, 0)[x] = 0.70f;
+        amb_image_row(image, 3, 0)[x] = opacity;
+    }
+    status = amb_texture_from_image(image, AMB_TEXEL_RGBA16F, true, out, error);
+    amb_image_close(&image);
+    return status;
+}
