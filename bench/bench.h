@@ -45,7 +45,7 @@ typedef struct bench_workload {
 } bench_workload;
 
 extern const bench_workload *const bench_workloads[]; /* NULL-ended; the first two measure the machine's peaks */
-extern const bench_workload bench_flops, bench_copy, bench_mesh;
+extern const bench_workload bench_flops, bench_copy, bench_mesh, bench_julia;
 extern const bench_workload bench_post_bloom, bench_post_mlaa, bench_post_chain;
 
 double bench_seconds(void); /* a clock that only goes forward */

@@ -4,6 +4,7 @@
 const bench_workload *const bench_workloads[] = {
     &bench_flops,
     &bench_copy,
+    &bench_julia,
     &bench_mesh,
     &bench_post_bloom,
     &bench_post_mlaa,

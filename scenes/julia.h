@@ -16,8 +16,15 @@
 #ifndef AMB_SCENES_JULIA_H
 #define AMB_SCENES_JULIA_H
 
+#include <ambiance/camera.h>
 #include <ambiance/math.h>
 #include <ambiance/vec.h>
+
+#define JULIA_SECONDS 80.0f
+/* Rays start where a cone around their tile first nears the set, and the tile's cone where its coarse tile's did. Sizes
+ * in pixels, the same on every instruction set; a fragment block lies in one tile. */
+#define JULIA_TILE 4
+#define JULIA_COARSE_TILE (4 * JULIA_TILE)
 
 #define JULIA_ESCAPE 64.0f /* |z|² of escape: from here on log|z| / 2ⁿ is the potential to about 1 % */
 
@@ -41,6 +48,8 @@ AMB_INLINE julia_set julia_make(v4 c, int iterations)
 
 /* c along a smooth closed path through shapes worth seeing, once around in `period` seconds; any time. */
 v4 amb_julia_path(double time, double period);
+/* The scene's camera, once around in JULIA_SECONDS; any time. */
+amb_camera amb_julia_camera(double time, int width, int height);
 
 /* log √a for a ≥ JULIA_ESCAPE, at most 0.3 % too small and never too large: the exponent and, for the mantissa 1 + f,
  * f + k·f(1 - f) ≤ log2(1 + f), with k the slope's difference at f = 1. */

@@ -1,4 +1,4 @@
-/* The way of c through the quaternions. */
+/* The ways of c through the quaternions and of the camera around the set. */
 #include "scenes/julia.h"
 
 #include <ambiance/camera.h>
@@ -31,4 +31,21 @@ v4 amb_julia_path(double time, double period)
     segment = segment >= STATIONS ? STATIONS - 1 : segment;
     float t = (float)(way - segment);
     return v4_of3(around(segment, t, v4_xyz), around(segment, t, last_part).x);
+}
+
+/* Once around the set, now near, now far; one key more at either end closes the loop. */
+static const amb_camera_key camera_keys[] = {
+    {-10, {-0.972f, 0.54f, 2.59f}, {0, 0, 0}, {0, 1, 0}},   {0, {0.324f, 0.972f, 2.86f}, {0, 0, 0}, {0, 1, 0}},
+    {10, {2.05f, 0.756f, 1.84f}, {0, 0, 0}, {0.05f, 1, 0}}, {20, {2.38f, 0.108f, -0.648f}, {0, 0, 0}, {0.1f, 1, 0}},
+    {30, {0.972f, -0.54f, -2.27f}, {0, 0, 0}, {0, 1, 0}},   {40, {-1.3f, 0.324f, -2.38f}, {0, 0, 0}, {0, 1, 0.1f}},
+    {50, {-2.48f, 1.19f, -0.216f}, {0, 0, 0}, {0, 1, 0}},   {60, {-1.62f, 0.864f, 1.94f}, {0, 0, 0}, {0, 1, 0}},
+    {70, {-0.972f, 0.54f, 2.59f}, {0, 0, 0}, {0, 1, 0}},    {80, {0.324f, 0.972f, 2.86f}, {0, 0, 0}, {0, 1, 0}},
+    {90, {2.05f, 0.756f, 1.84f}, {0, 0, 0}, {0.05f, 1, 0}},
+};
+
+amb_camera amb_julia_camera(double time, int width, int height)
+{
+    double turn = time / (double)JULIA_SECONDS;
+    float now = (float)((turn - floor(turn)) * (double)JULIA_SECONDS);
+    return amb_camera_at(camera_keys, sizeof camera_keys / sizeof *camera_keys, now, 0.8f, 0.05f, 20, width, height);
 }

@@ -7,14 +7,7 @@
 #include <ambiance/rays.h>
 #include <ambiance/scene.h>
 
-#include <math.h>
 #include <stdlib.h>
-
-#define SECONDS 80.0f
-/* Rays start where a cone around their tile first nears the set, and the tile's cone where its coarse tile's did. Sizes
- * in pixels, the same on every instruction set; a fragment block lies in one tile. */
-#define TILE 4
-#define COARSE (4 * TILE)
 
 /* ---- parameters ---------------------------------------------------------------------------------------------------
  */
@@ -128,16 +121,6 @@ enum {
     OUT_REFLECTION,
     OUT_FRESNEL,
     OUT_COUNT
-};
-
-/* Once around the set, now near, now far; one key more at either end closes the loop. */
-static const amb_camera_key camera_keys[] = {
-    {-10, {-0.972f, 0.54f, 2.59f}, {0, 0, 0}, {0, 1, 0}},   {0, {0.324f, 0.972f, 2.86f}, {0, 0, 0}, {0, 1, 0}},
-    {10, {2.05f, 0.756f, 1.84f}, {0, 0, 0}, {0.05f, 1, 0}}, {20, {2.38f, 0.108f, -0.648f}, {0, 0, 0}, {0.1f, 1, 0}},
-    {30, {0.972f, -0.54f, -2.27f}, {0, 0, 0}, {0, 1, 0}},   {40, {-1.3f, 0.324f, -2.38f}, {0, 0, 0}, {0, 1, 0.1f}},
-    {50, {-2.48f, 1.19f, -0.216f}, {0, 0, 0}, {0, 1, 0}},   {60, {-1.62f, 0.864f, 1.94f}, {0, 0, 0}, {0, 1, 0}},
-    {70, {-0.972f, 0.54f, 2.59f}, {0, 0, 0}, {0, 1, 0}},    {80, {0.324f, 0.972f, 2.86f}, {0, 0, 0}, {0, 1, 0}},
-    {90, {2.05f, 0.756f, 1.84f}, {0, 0, 0}, {0.05f, 1, 0}},
 };
 
 /* ---- state --------------------------------------------------------------------------------------------------------
@@ -394,7 +377,7 @@ static void write_targets(const julia_uniforms *u, const julia_light *r, amb_fs_
 static void julia_fragment(const amb_fs_in *in, amb_fs_out *out)
 {
     const julia_uniforms *u = in->uniforms;
-    int tile = (int)f_lane(in->y, 0) / TILE * u->tiles_across + (int)f_lane(in->x, 0) / TILE;
+    int tile = (int)f_lane(in->y, 0) / JULIA_TILE * u->tiles_across + (int)f_lane(in->x, 0) / JULIA_TILE;
     float start = u->start[tile];
     julia_light r = trace(u, in->x, in->y, start, in->live);
     write_targets(u, &r, out);
@@ -412,12 +395,9 @@ static void julia_fragment(const amb_fs_in *in, amb_fs_out *out)
 static void fill_uniforms(julia_uniforms *u, const julia_state *s, const amb_scene_job *job)
 {
     const julia_params *k = &u->params;
-    double turn = job->time / (double)SECONDS;
-    float time = (float)((turn - floor(turn)) * (double)SECONDS);
-    v4 c = k->morph ? amb_julia_path(job->time, (double)SECONDS) : v4_of3(k->constant, k->constant_k);
+    v4 c = k->morph ? amb_julia_path(job->time, (double)JULIA_SECONDS) : v4_of3(k->constant, k->constant_k);
     u->set = julia_make(c, k->iterations);
-    u->camera = amb_camera_at(camera_keys, sizeof camera_keys / sizeof *camera_keys, time, 0.8f, 0.05f, 20, job->width,
-                              job->height);
+    u->camera = amb_julia_camera(job->time, job->width, job->height);
     u->to_light = v3_normalize(k->light_direction);
     u->limits = (amb_march_limits){v3_length(u->camera.ray_dy) * 0.5f, k->tolerance * 2.0f, 1e-5f, k->steps};
     u->ball = s->ball;
@@ -448,9 +428,18 @@ static amb_status julia_frame(const void *state, const amb_scene_job *job, amb_e
     amb_pass *pass = NULL;
     fill_uniforms(&u, state, job);
     amb_target target = choose_targets(&u, job->frame);
-    julia_tiles coarse = {
-        &u, NULL, NULL, COARSE, (job->width + COARSE - 1) / COARSE, (job->height + COARSE - 1) / COARSE};
-    julia_tiles fine = {&u, &coarse, NULL, TILE, (job->width + TILE - 1) / TILE, (job->height + TILE - 1) / TILE};
+    julia_tiles coarse = {&u,
+                          NULL,
+                          NULL,
+                          JULIA_COARSE_TILE,
+                          (job->width + JULIA_COARSE_TILE - 1) / JULIA_COARSE_TILE,
+                          (job->height + JULIA_COARSE_TILE - 1) / JULIA_COARSE_TILE};
+    julia_tiles fine = {&u,
+                        &coarse,
+                        NULL,
+                        JULIA_TILE,
+                        (job->width + JULIA_TILE - 1) / JULIA_TILE,
+                        (job->height + JULIA_TILE - 1) / JULIA_TILE};
     size_t coarse_count = (size_t)coarse.across * (size_t)coarse.down;
     float *start = malloc((coarse_count + (size_t)fine.across * (size_t)fine.down) * sizeof *start);
     if (start == NULL)
@@ -481,7 +470,7 @@ done:
 const amb_scene WIDE(amb_scene_julia) = {
     .name = "julia",
     .about = "a quaternion Julia set that changes shape, in HDR light",
-    .seconds = SECONDS,
+    .seconds = JULIA_SECONDS,
     .params = {table, sizeof table / sizeof *table, sizeof(julia_params)},
     .aovs = aovs,
     .aov_count = OUT_COUNT,
