@@ -179,16 +179,15 @@ static void render_values(void **state)
     assert_false(exists("a.exr"));
 }
 
-/* Every parameter of every scene refuses nonsense; numbers refuse what lies outside their range. */
+/* Every parameter of every scene refuses nonsense; of one scene, also what lies outside the range of any. */
 static void render_parameters(void **state)
 {
     (void)state;
     needs_scene();
     result r = run("for s in $($A list --names); do for p in $($A list $s --names); do\n"
-                   "$A render $s --set $p=nonsense 2>/dev/null; c=$?; [ $c = 2 ] || echo $s $p nonsense $c\n"
-                   "$A render $s --set $p= 2>/dev/null; c=$?; [ $c = 2 ] || echo $s $p empty $c\n"
-                   "$A render $s --set $p=1e39 2>/dev/null; c=$?; [ $c = 2 ] || echo $s $p 1e39 $c\n"
-                   "$A render $s --set $p=nan,nan,nan 2>/dev/null; c=$?; [ $c = 2 ] || echo $s $p nan $c\n"
+                   "$P render $s --set $p=nonsense 2>/dev/null; c=$?; [ $c = 2 ] || echo $s $p nonsense $c\n"
+                   "done; done; for p in $($A list $S --names); do for v in '' 1e39 nan,nan,nan 1,2,3,4; do\n"
+                   "$P render $S --set $p=$v 2>/dev/null; c=$?; [ $c = 2 ] || echo $S $p $v $c\n"
                    "done; done");
     assert_string_equal(r.out, "");
 }
@@ -214,7 +213,7 @@ static void render_outputs(void **state)
     fails(3, "ln -sf /dev/full full.png; $A render $S --assets builtin --size 8x8 -o full.png",
           "No space left on device");
     fails(3, "ulimit -f 8; $A render $S --assets builtin --size 256x256 -o big.exr", "big.exr");
-    fails(3, "ulimit -f 1; $A render $S --assets builtin --size 96x96 -o big.png", "big.png");
+    fails(3, "ulimit -f 8; $A render $S --assets builtin --size 256x256 -o big.png", "big.png");
     fails(3, "mkdir gone; cd gone; rmdir ../gone; $A render $S --assets builtin --size 8x8 -o a.png", "a.png");
     assert_false(exists("big.exr"));
     assert_false(exists("big.png"));
@@ -238,7 +237,7 @@ static void killed_in_mid_write(void **state)
     needs_scene();
     succeeds("$A render $S --assets builtin --size 640x480 --quiet -o whole.exr");
     succeeds("printf old >old; cp old hit.exr");
-    result r = run("seen=0; for i in 1 2 3 4 5 6; do\n"
+    result r = run("seen=0; for i in 1 2 3 4; do\n"
                    "$P render $S --assets builtin --size 640x480 --quiet -o hit.exr & p=$!\n"
                    "n=0; while kill -0 $p 2>/dev/null; do n=$((n + 1))\n"
                    "  if ls -A | grep -q '^.hit.exr.*ambiance-tmp$'; then seen=$((seen + 1)); break; fi\n"
@@ -254,7 +253,7 @@ static void interrupted_in_mid_write(void **state)
 {
     (void)state;
     needs_scene();
-    result r = run("seen=0; for i in 1 2 3; do rm -f int.exr\n"
+    result r = run("seen=0; for i in 1 2; do rm -f int.exr\n"
                    "$P render $S --assets builtin --size 640x480 --quiet -o int.exr & p=$!\n"
                    "while kill -0 $p 2>/dev/null; do\n"
                    "  if ls -A | grep -q '^.int.exr.*ambiance-tmp$'; then seen=$((seen + 1)); break; fi\n"
@@ -400,7 +399,7 @@ static int enter(void **state)
     setenv("P", program, 1);
     unsetenv("AMBIANCE_ASSETS");
     unsetenv("AMBIANCE_PACK");
-    result r = run("$A list --names | grep -x -e julia -e mercury | head -n 1"); /* quick to load */
+    result r = run("$A list --names | grep -x julia || $A list --names | head -n 1"); /* julia loads quickly */
     has_scene = r.code == 0 && sscanf(r.out, "%63s", scene) == 1;
     setenv("S", has_scene ? scene : "none", 1);
     return 0;
