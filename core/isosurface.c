@@ -37,8 +37,7 @@ static void evaluate(const iso_grid *grid, iso_scratch *scratch)
     points->count = 0;
 }
 
-/* ---- pass 1: which blocks may hold a piece of the surface ---------------------------------------------------------
- */
+/* ---- pass 1: which blocks may hold a piece of the surface -------------------------------------------------------- */
 
 /* One row of blocks. A block is kept when its centre is nearer to the surface than its corners. */
 static void find_blocks(void *user, int row, int thread)
@@ -75,8 +74,7 @@ static amb_status list_blocks(iso_grid *grid, amb_error *error)
     return AMB_OK;
 }
 
-/* ---- pass 2: patterns and vertices of a block's cells -------------------------------------------------------------
- */
+/* ---- pass 2: patterns and vertices of a block's cells ------------------------------------------------------------ */
 
 #define CORNERS (ISO_BLOCK + 1)
 #define CORNER(x, y, z) (((z)*CORNERS + (y)) * CORNERS + (x))
@@ -192,8 +190,7 @@ static void place_vertices(const iso_grid *grid, iso_block *block, const iso_scr
     }
 }
 
-/* ---- vertices onto the surface ------------------------------------------------------------------------------------
- */
+/* ---- vertices onto the surface ----------------------------------------------------------------------------------- */
 
 #define POINTS_A_TIME (AMB_ISO_POINTS / 8)
 
@@ -281,8 +278,7 @@ static void sample_block(void *user, int index, int thread)
     iso_project(grid, scratch, block->position, block->normal, block->vertex_count);
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 amb_status iso_bound_broken(const iso_grid *grid, amb_error *error)
 {
@@ -336,7 +332,7 @@ static amb_status check_desc(const amb_context *context, const amb_isosurface_de
         if (!(cells > 0.0f) || !(cells <= (float)AMB_MAX_ISOSURFACE_CELLS))
             return amb_fail(error, AMB_ERROR_LIMIT, "isosurface: %g cells along axis %d; 1 to %d are allowed",
                             (double)cells, axis, AMB_MAX_ISOSURFACE_CELLS);
-        grid->blocks[axis] = ((int)ceilf(cells) + ISO_BLOCK - 1) / ISO_BLOCK;
+        grid->blocks[axis] = (int)(cells * (1.0f / ISO_BLOCK)) + 1;
     }
     return AMB_OK;
 }

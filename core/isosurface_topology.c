@@ -42,8 +42,7 @@ static bool face_doubled(const iso_grid *grid, const iso_block *block, int cell,
     return below.block != NULL && (grid->table[below.block->pattern[below.cell]].twice >> (2 * axis + 1) & 1);
 }
 
-/* ---- pass 3: joints of doubled faces ------------------------------------------------------------------------------
- */
+/* ---- pass 3: joints of doubled faces ----------------------------------------------------------------------------- */
 
 static void find_joints(void *user, int index, int thread)
 {
@@ -91,8 +90,7 @@ static void place_joints(void *user, int index, int thread)
     }
 }
 
-/* ---- pass 4: triangles --------------------------------------------------------------------------------------------
- */
+/* ---- pass 4: triangles ------------------------------------------------------------------------------------------- */
 
 /* The joint on a side of the polygon of `edge` (an edge of the cell's low face along `axis`), if that face is doubled.
  */

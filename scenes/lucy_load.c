@@ -10,8 +10,7 @@
 
 AMB_DECLARE_WIDE(void, lucy_bake_chunk, (void *user, int chunk, int thread));
 
-/* ---- standing up --------------------------------------------------------------------------------------------------
- */
+/* ---- standing up ------------------------------------------------------------------------------------------------- */
 
 static float component(v3 a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
 
@@ -85,8 +84,7 @@ static amb_status stand_up(const amb_mesh *source, amb_mesh **out, amb_error *er
     return status;
 }
 
-/* ---- ambient occlusion --------------------------------------------------------------------------------------------
- */
+/* ---- ambient occlusion ------------------------------------------------------------------------------------------- */
 
 /* Even points on the sphere along a spiral (R. Swinbank and R. J. Purser, "Fibonacci grids", 2006). */
 static void spread_directions(v3 direction[LUCY_DIRECTIONS])
@@ -196,8 +194,7 @@ done:
     return status;
 }
 
-/* ---- the whole ----------------------------------------------------------------------------------------------------
- */
+/* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 static amb_status load_all(const amb_context *context, amb_assets *assets, lucy_state *state, amb_error *error)
 {

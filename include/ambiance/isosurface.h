@@ -14,7 +14,7 @@ typedef struct amb_isosurface_desc {
     int lanes; /* AMB_LANES of the file `field` was compiled in: 1, or the context's instruction set */
     amb_field field;
     const void *user; /* handed to the field */
-    v3 lo, hi;        /* box that holds the whole surface (rounded up to 8 cells); world units */
+    v3 lo, hi;        /* box that holds the whole surface (enlarged at hi to whole blocks of 8 cells) */
     float cell;       /* edge of a grid cell, world units: details thinner than two cells may be lost */
     float lipschitz;  /* |field(p) - field(q)| ≤ lipschitz · |p - q|: lets empty space be skipped; 0 means 1 */
 } amb_isosurface_desc;
