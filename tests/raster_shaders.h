@@ -29,7 +29,7 @@ typedef struct raster_test_shaders {
 } raster_test_shaders;
 
 /* A small exact number of a primitive and a channel: -¼…1, without rounding. */
-#define RASTER_TEST_CODE(primitive, salt) ((((primitive)*37 + (salt)*11 + 5) & 31) * 0.0390625f - 0.25f)
+#define RASTER_TEST_CODE(primitive, salt) ((float)(((primitive)*37 + (salt)*11 + 5) & 31) * 0.0390625f - 0.25f)
 
 const raster_test_shaders *raster_test_shaders_of(amb_isa isa);
 
