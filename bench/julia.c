@@ -20,6 +20,7 @@ typedef struct julia_bench {
         void *state;
     } loaded[MAX_CONTEXTS]; /* the scene is loaded once for each context it is run on */
     int loaded_count;
+    double flops;
     bool has_peer;
     julia_peer peer;
 } julia_bench;
@@ -40,15 +41,39 @@ static void close_bench(void *state)
     free(b);
 }
 
-static amb_status open_peer(julia_bench *b, const amb_scene *scene, amb_error *error)
+static const void *parameter(const julia_twin *twin, const char *name)
+{
+    for (size_t i = 0; i < twin->table->count; i++)
+        if (!strcmp(twin->table->table[i].name, name))
+            return (const char *)twin->params + twin->table->table[i].offset;
+    return NULL;
+}
+v3 julia_parameter3(const julia_twin *twin, const char *name)
+{
+    const v3 *value = parameter(twin, name);
+    return value ? *value : (v3){0, 0, 0};
+}
+float julia_parameter(const julia_twin *twin, const char *name)
+{
+    const float *value = parameter(twin, name);
+    return value ? *value : 0.0f;
+}
+int julia_parameter_int(const julia_twin *twin, const char *name)
+{
+    const int *value = parameter(twin, name);
+    return value ? *value : 0;
+}
+
+static amb_status make_twin(julia_bench *b, const amb_scene *scene, bool peer, amb_error *error)
 {
     julia_twin twin = {.table = &scene->params, .params = b->params, .width = b->width, .height = b->height};
     twin.camera = amb_julia_camera(moment, b->width, b->height);
-    int iterations = 0;
-    for (size_t i = 0; i < scene->params.count; i++)
-        if (!strcmp(scene->params.table[i].name, "iterations"))
-            iterations = (int)scene->params.table[i].fallback[0];
-    twin.set = julia_make(amb_julia_path(moment, (double)scene->seconds), iterations);
+    twin.set = julia_make(amb_julia_path(moment, (double)scene->seconds), julia_parameter_int(&twin, "iterations"));
+    amb_march_limits limits = {v3_length(twin.camera.ray_dy) * 0.5f, 2.0f * julia_parameter(&twin, "tolerance"), 1e-5f,
+                               julia_parameter_int(&twin, "steps")};
+    b->flops = julia_count_flops(&twin, limits, v3_normalize(julia_parameter3(&twin, "light_direction")));
+    if (!peer)
+        return AMB_OK;
     amb_status status = amb_assets_texture(b->assets, "env/outdoor", &twin.environment, error);
     if (!status)
         status = amb_assets_texture(b->assets, "env/outdoor/irradiance", &twin.irradiance, error);
@@ -80,7 +105,7 @@ static amb_status open_bench(const bench_options *options, void **state, amb_err
     if (!b->params)
         return amb_fail(error, AMB_ERROR_MEMORY, "no memory for the julia workload");
     amb_params_defaults(&scene->params, b->params);
-    return options->peer ? open_peer(b, scene, error) : AMB_OK;
+    return make_twin(b, scene, options->peer != NULL, error);
 }
 
 static amb_status run(void *state, const amb_context *context, amb_error *error)
@@ -125,7 +150,7 @@ static bench_count count(const void *state, const amb_context *context)
 {
     const julia_bench *b = state;
     (void)context;
-    return (bench_count){.items = 1e-6 * b->width * b->height, .unit = "Mpixels/s"};
+    return (bench_count){.flops = b->flops, .items = 1e-6 * b->width * b->height, .unit = "Mpixels/s"};
 }
 
 const bench_workload bench_julia = {

@@ -6,6 +6,7 @@
 #include "scenes/julia.h"
 
 #include <ambiance/camera.h>
+#include <ambiance/march.h>
 #include <ambiance/scene.h>
 #include <ambiance/texture.h>
 
@@ -23,6 +24,13 @@ typedef struct julia_twin {
     const amb_texture *environment, *irradiance;
     int width, height;
 } julia_twin;
+
+/* A parameter of the scene by name; zeros when there is none. */
+float julia_parameter(const julia_twin *twin, const char *name);
+v3 julia_parameter3(const julia_twin *twin, const char *name);
+int julia_parameter_int(const julia_twin *twin, const char *name);
+/* Operations of one picture, about. */
+double julia_count_flops(const julia_twin *twin, amb_march_limits limits, v3 to_light);
 
 amb_status julia_peer_open(julia_peer *peer, const julia_twin *twin, amb_error *error);
 amb_status julia_peer_run(const julia_peer *peer, amb_error *error);

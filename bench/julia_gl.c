@@ -231,15 +231,6 @@ static void set3(GLuint program, const char *name, v3 a)
 }
 static void set1(GLuint program, const char *name, float a) { glUniform1f(glGetUniformLocation(program, name), a); }
 
-static v3 parameter3(const julia_twin *twin, const char *name)
-{
-    v3 a = {0, 0, 0};
-    for (size_t i = 0; i < twin->table->count; i++)
-        if (!strcmp(twin->table->table[i].name, name))
-            memcpy(&a, (const char *)twin->params + twin->table->table[i].offset, sizeof a);
-    return a;
-}
-
 static void set_uniforms(GLuint program, const julia_twin *twin)
 {
     const julia_set *set = &twin->set;
@@ -254,9 +245,9 @@ static void set_uniforms(GLuint program, const julia_twin *twin)
     set3(program, "ray_origin", camera->ray_origin);
     set3(program, "ray_dx", camera->ray_dx);
     set3(program, "ray_dy", camera->ray_dy);
-    set3(program, "to_light", v3_normalize(parameter3(twin, "light_direction")));
+    set3(program, "to_light", v3_normalize(julia_parameter3(twin, "light_direction")));
     set1(program, "footprint", v3_length(camera->ray_dy) * 0.5f);
-    set1(program, "cone", v3_length(camera->ray_dy) * 0.5f * 2.0f * parameter3(twin, "tolerance").x);
+    set1(program, "cone", v3_length(camera->ray_dy) * 0.5f * 2.0f * julia_parameter(twin, "tolerance"));
     glUniform2f(glGetUniformLocation(program, "size"), (float)twin->width, (float)twin->height);
     glUniform1i(glGetUniformLocation(program, "starts"), 0);
     glUniform1i(glGetUniformLocation(program, "environment"), 1);
