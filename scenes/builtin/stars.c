@@ -81,7 +81,7 @@ static uint32_t *list_by_row(const amb_star_map *map, uint32_t *first)
 amb_status amb_builtin_stars(const amb_context *context, amb_texture **out, amb_error *error)
 {
     amb_status status = AMB_OK;
-    amb_star_map map = {.width = MAP_WIDTH, .height = MAP_HEIGHT, .blur = 0.56f * AMB_PI / (float)MAP_HEIGHT};
+    amb_star_map map = {.width = MAP_WIDTH, .height = MAP_HEIGHT, .blur = 0.66f * AMB_PI / (float)MAP_HEIGHT};
     size_t bytes = (size_t)MAP_WIDTH * MAP_HEIGHT * 8, threads = (size_t)amb_context_threads(context);
     amb_star *star = calloc(STARS, sizeof *star);
     uint32_t *first = calloc(MAP_HEIGHT + 1, sizeof *first), *list = NULL;
