@@ -6,7 +6,7 @@
 #include <ambiance/random.h>
 #include <stdlib.h>
 
-enum { MAP_WIDTH = 4096, MAP_HEIGHT = 2048, CRATERS = 60000, RAY_CRATERS = 34 };
+enum { MAP_WIDTH = 4096, MAP_HEIGHT = 2048, CRATERS = 90000, RAY_CRATERS = 34, RAY_FIRST = 60000 };
 
 AMB_DECLARE_WIDE(void, amb_mercury_row, (void *user, int y, int thread));
 
@@ -49,7 +49,7 @@ static amb_crater plain_crater(uint32_t i)
 /* A young crater with bright rays. */
 static amb_crater ray_crater(uint32_t i)
 {
-    uint32_t id = CRATERS + i;
+    uint32_t id = RAY_FIRST + i;
     float size = draw(id, 2);
     amb_crater c = {.radius = 0.006f + 0.016f * size * size, .seed = 61.0f * draw(id, 3)};
     place(&c, id);

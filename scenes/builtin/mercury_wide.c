@@ -28,8 +28,8 @@ AMB_INLINE void plains(v3x p, f32x *relief, f32x *brightness)
     f32x grit =
         fbm3(noise_gradient3, v3x_scale(p, f_set(340.0f)), (amb_lattice){.seed = 37}, (amb_fbm){2, 2.0f, 0.7f}).value;
     f32x smooth = f_smoothstep(f_set(0.02f), f_set(0.32f), patches); /* lava plains have little relief */
-    *relief = (hills * 0.030f + grit * 0.017f) * (1.0f - 0.6f * smooth);
-    *brightness = patches * 0.14f + smooth * 0.03f + hills * 0.012f;
+    *relief = (hills * 0.034f + grit * 0.024f) * (1.0f - 0.6f * smooth);
+    *brightness = patches * 0.19f + smooth * 0.03f + hills * 0.016f;
 }
 
 /* ---- craters ---------------------------------------------------------------------------------------------------- */
@@ -124,8 +124,10 @@ static void crater_row(const amb_crater *c, const row_frame *row, int width, flo
 AMB_INLINE void texels_at(f32x relief, f32x brightness, unsigned char *to)
 {
     f32x light = f_clamp(0.25f + brightness + relief * 0.95f, f_set(0.03f), f_set(0.9f));
-    f32x fresh = f_smoothstep(f_set(0.04f), f_set(0.30f), brightness);
-    v3x warm = v3x_splat(v3_of(1.10f, 0.985f, 0.885f)), cool = v3x_splat(v3_of(1.0f, 1.0f, 0.985f));
+    /* Fresh ejecta and the dark, low-reflectance material are bluer than the plains between. */
+    f32x fresh = f_smoothstep(f_set(0.06f), f_set(0.30f), brightness) +
+                 0.6f * f_smoothstep(f_set(0.0f), f_set(-0.14f), brightness);
+    v3x warm = v3x_splat(v3_of(1.12f, 0.985f, 0.865f)), cool = v3x_splat(v3_of(0.99f, 1.0f, 0.995f));
     v3x rgb = v3x_scale(v3x_lerp(warm, cool, fresh), light);
     f32x channel[3] = {rgb.x, rgb.y, rgb.z};
     for (int k = 0; k < 3; k++) {
