@@ -55,7 +55,7 @@ amb_status amb_read_file(const char *path, uint8_t **data, size_t *bytes, amb_er
     else
         status = read_all(descriptor, path, buffer, (size_t)file.st_size, error);
     close(descriptor);
-    if (status != AMB_OK) {
+    if (status != AMB_OK || !buffer) {
         free(buffer);
         return status;
     }

@@ -52,10 +52,12 @@ static amb_status parse_header(ktx_file *file)
     file->height = word_at(file, 40);
     file->faces = word_at(file, 52);
     file->levels = word_at(file, 56) ? word_at(file, 56) : 1;
-    for (size_t i = 0; i < sizeof ktx_formats / sizeof *ktx_formats; i++)
-        if (ktx_formats[i].gl_internal_format == internal)
-            file->format = &ktx_formats[i];
-    if (!file->format)
+    bool is_known = false;
+    for (size_t i = 0; i < sizeof ktx_formats / sizeof *ktx_formats && !is_known; i++) {
+        file->format = &ktx_formats[i];
+        is_known = file->format->gl_internal_format == internal;
+    }
+    if (!is_known)
         return amb_fail(file->error, AMB_ERROR_FORMAT,
                         "%s: KTX of GL format 0x%04x; allowed are R11F_G11F_B10F, RGBA16F, RGBA32F, R32F, RGBA8 and "
                         "SRGB8_ALPHA8",
@@ -112,8 +114,8 @@ static amb_status walk_levels(ktx_file *file, uint8_t *to, size_t *total)
 
 amb_status amb_read_ktx_memory(const void *data, size_t bytes, const char *name, amb_texture **out, amb_error *error)
 {
-    ktx_file file = {.data = data, .bytes = bytes, .name = name, .error = error};
-    size_t total;
+    ktx_file file = {.data = data, .bytes = bytes, .name = name, .format = ktx_formats, .error = error};
+    size_t total = 0;
     uint8_t *texels = NULL;
     *out = NULL;
     if (amb_file_kind_of(data, bytes) != AMB_FILE_KTX)
@@ -121,7 +123,7 @@ amb_status amb_read_ktx_memory(const void *data, size_t bytes, const char *name,
     amb_status status = parse_header(&file);
     if (status == AMB_OK)
         status = walk_levels(&file, NULL, &total);
-    if (status == AMB_OK && !(texels = malloc(total)))
+    if (status == AMB_OK && (total == 0 || !(texels = malloc(total))))
         status = amb_fail(error, AMB_ERROR_MEMORY, "%s: out of memory for %zu bytes of texels", name, total);
     if (status == AMB_OK)
         status = walk_levels(&file, texels, &total);

@@ -80,10 +80,10 @@ amb_status amb_output_begin(const char *path, amb_output **out, amb_error *error
     if (!output->path)
         output->path = strdup(path);
     amb_status status = AMB_OK;
-    if (!output->path)
-        status = amb_fail(error, AMB_ERROR_MEMORY, "out of memory for writing '%s'", path);
-    if (status == AMB_OK)
+    if (output->path)
         status = open_output(output, error);
+    else
+        status = amb_fail(error, AMB_ERROR_MEMORY, "out of memory for writing '%s'", path);
     if (status != AMB_OK)
         amb_output_abort(&output);
     *out = output;

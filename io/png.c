@@ -40,10 +40,7 @@ static void on_warning(png_structp png, png_const_charp message)
 }
 
 /* Nearest of 256; NaN gives 0. */
-static uint8_t quantise(float value)
-{
-    return !(value > 0.0f) ? 0 : value >= 1.0f ? 255 : (uint8_t)(value * 255.0f + 0.5f);
-}
+static uint8_t quantise(float value) { return (uint8_t)f_to_i(f_round(f_saturate(value) * 255.0f)); }
 
 static void write_rows(png_writer *writer, png_structp png, png_infop info)
 {

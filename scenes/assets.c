@@ -135,19 +135,20 @@ amb_status amb_assets_create(const amb_context *context, const amb_assets_option
     *out = NULL;
     options = options ? options : &defaults;
     amb_assets *assets = calloc(1, sizeof *assets);
-    if (assets)
-        assets->asset = calloc((size_t)asset_table_count, sizeof *assets->asset);
-    if (!assets || !assets->asset)
-        status = amb_fail(error, AMB_ERROR_MEMORY, "out of memory for the asset table");
-    if (status == AMB_OK && !options->builtin_only)
+    asset *items = calloc((size_t)asset_table_count, sizeof *items);
+    if (!assets || !items) {
+        free(items);
+        free(assets);
+        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for the asset table");
+    }
+    *assets = (amb_assets){.context = context, .count = asset_table_count, .asset = items};
+    if (!options->builtin_only)
         status = find_user_folder(options->user_dir, user, error);
     if (status == AMB_OK && !options->builtin_only)
         status = find_pack_folder(options->pack_dir, pack, error);
     for (int i = 0; i < asset_table_count && status == AMB_OK; i++) {
-        assets->context = context;
-        assets->count = i + 1;
-        assets->asset[i].row = &asset_table[i];
-        status = resolve(&assets->asset[i], user, pack, error);
+        items[i].row = &asset_table[i];
+        status = resolve(&items[i], user, pack, error);
     }
     if (status != AMB_OK)
         amb_assets_close(&assets);
@@ -221,7 +222,7 @@ static amb_status load_mesh(const amb_context *context, asset *item, amb_error *
     if (item->source == AMB_ASSET_BUILTIN)
         return item->row->make_mesh(context, &item->mesh, error);
     amb_status status = amb_read_mesh(item->path, &item->mesh, error);
-    if (status == AMB_OK && !item->mesh->normal)
+    if (status == AMB_OK && item->mesh && !item->mesh->normal)
         status = amb_mesh_smooth_normals(item->mesh, true, error);
     if (status != AMB_OK)
         amb_mesh_close(&item->mesh);
@@ -287,20 +288,20 @@ static amb_status use(amb_assets *assets, const char *name, bool is_mesh, asset 
 
 amb_status amb_assets_texture(amb_assets *assets, const char *name, const amb_texture **out, amb_error *error)
 {
-    asset *item;
+    asset *item = NULL;
     *out = NULL;
     amb_status status = use(assets, name, false, &item, error);
-    if (status == AMB_OK)
+    if (status == AMB_OK && item)
         *out = item->texture;
     return status;
 }
 
 amb_status amb_assets_mesh(amb_assets *assets, const char *name, const amb_mesh **out, amb_error *error)
 {
-    asset *item;
+    asset *item = NULL;
     *out = NULL;
     amb_status status = use(assets, name, true, &item, error);
-    if (status == AMB_OK)
+    if (status == AMB_OK && item)
         *out = item->mesh;
     return status;
 }
@@ -317,29 +318,31 @@ void amb_assets_describe(const amb_assets *assets, int index, amb_asset_info *ou
     memcpy(out->sha256, item->sha256, sizeof out->sha256);
 }
 
-static int by_name(const void *a, const void *b)
+/* The used asset of the first name after `last` (NULL: of all); NULL at the end. */
+static const asset *next_used(const amb_assets *assets, const asset *last)
 {
-    return strcmp((*(const asset *const *)a)->row->name, (*(const asset *const *)b)->row->name);
+    const asset *next = NULL;
+    for (int i = 0; i < assets->count; i++) {
+        const asset *item = &assets->asset[i];
+        if (item->is_used && (!last || strcmp(item->row->name, last->row->name) > 0) &&
+            (!next || strcmp(item->row->name, next->row->name) < 0))
+            next = item;
+    }
+    return next;
 }
 
 void amb_assets_digest(const amb_assets *assets, char hex[65])
 {
     static const char *const sources[] = {"user", "pack", "builtin"};
-    const asset *used[256];
-    size_t count = 0;
+    const asset *item = next_used(assets, NULL);
     hex[0] = '\0';
-    for (int i = 0; i < assets->count && count < sizeof used / sizeof *used; i++)
-        if (assets->asset[i].is_used)
-            used[count++] = &assets->asset[i];
-    if (count == 0)
+    if (!item)
         return;
-    qsort(used, count, sizeof *used, by_name);
     SHA2_CTX sha;
     SHA256Init(&sha);
-    for (size_t i = 0; i < count; i++) {
+    for (; item; item = next_used(assets, item)) {
         char line[256];
-        int length =
-            snprintf(line, sizeof line, "%s %s %s\n", used[i]->row->name, sources[used[i]->source], used[i]->sha256);
+        int length = snprintf(line, sizeof line, "%s %s %s\n", item->row->name, sources[item->source], item->sha256);
         SHA256Update(&sha, (const uint8_t *)line, (size_t)length);
     }
     SHA256End(&sha, hex);
