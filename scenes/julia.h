@@ -1,4 +1,4 @@
-/* The quaternion Julia set of z² + c, cut by the three-dimensional space of quaternions without a k part: distance,
+/* The quaternion Julia set of z² + c, cut by the three-dimensional space of quaternions without a k part: its distance,
  * gradient and orbit trap, lanes-wide.
  *
  * Under z → z² + c the imaginary part of z never leaves the plane spanned by the imaginary parts of c and of the
@@ -10,8 +10,8 @@
  * too long. For a connected complex Julia set the distance is at least ½ · ½(1 - e^(-2G)) / |grad G| (from Koebe's ¼
  * theorem; J. C. Hart, D. J. Sandin, L. H. Kauffman, "Ray tracing deterministic 3-D fractals", SIGGRAPH 1989, take it
  * over to quaternions), hence the factor ½, the usual one, which is all that is left near the set where G → 0. Instead
- * of the exponential we take G / (1 + G + G²/3), which never exceeds it. That no step overshoots a quaternion set is
- * shown by test_julia.c, which marches in fine steps.
+ * of the exponential we take G / (1 + G + G²/3), which never exceeds it. That no step overshoots a connected quaternion
+ * set is shown by test_julia.c, which looks for points of the set inside the ball of the distance, in fine steps.
  */
 #ifndef AMB_SCENES_JULIA_H
 #define AMB_SCENES_JULIA_H
@@ -46,7 +46,8 @@ AMB_INLINE julia_set julia_make(v4 c, int iterations)
     return (julia_set){c, axis, along, iterations, radius * 1.0001f};
 }
 
-/* c along a smooth closed path through shapes worth seeing, once around in `period` seconds; any time. */
+/* c along a smooth closed path through connected sets worth seeing, once around in `period` seconds; any finite time.
+ */
 v4 amb_julia_path(double time, double period);
 /* The scene's camera, once around in JULIA_SECONDS; any time. */
 amb_camera amb_julia_camera(double time, int width, int height);

@@ -1,28 +1,40 @@
-/* The ways of c through the quaternions and of the camera around the set. */
+/* The ways of c through the quaternions and of the camera around the set.
+ *
+ * The orbit of 0 stays in the plane of 1 and the axis of c, so the set is connected exactly when Re c + |Im c|·i lies
+ * in the Mandelbrot set. The way goes round inside it: the bulb of period 3, its neck, the main cardioid and back,
+ * while the axis swings. The axis decides how our three-dimensional space cuts the four-dimensional set. */
 #include "scenes/julia.h"
 
 #include <ambiance/camera.h>
 
 #include <math.h>
 
-/* Real, i, j, k; equal times apart. */
-static const v4 station[] = {
-    {-0.200f, 0.800f, 0.000f, 0.000f},  {-0.125f, 0.640f, 0.380f, 0.060f},   {-0.291f, 0.339f, 0.437f, 0.200f},
-    {-0.450f, 0.340f, 0.447f, 0.090f},  {-0.450f, -0.100f, 0.600f, -0.050f}, {-0.213f, -0.041f, 0.563f, -0.560f},
-    {-0.125f, -0.256f, 0.847f, 0.090f}, {-0.100f, 0.200f, 0.800f, 0.150f},
+typedef struct station {
+    v3 c;    /* real part, length of the imaginary part, 0 */
+    v3 axis; /* i, j, k; any length */
+} station;
+
+static const station stations[] = {
+    /* equal times apart */
+    {{-0.1950f, 0.7900f, 0}, {1.00f, 0.00f, 0.00f}},   {{-0.1300f, 0.7450f, 0}, {0.86f, 0.50f, 0.10f}},
+    {{-0.1250f, 0.6496f, 0}, {0.75f, 0.65f, 0.10f}},   {{-0.2400f, 0.6000f, 0}, {0.58f, 0.74f, 0.34f}},
+    {{-0.3800f, 0.5750f, 0}, {0.40f, 0.90f, 0.16f}},   {{-0.4800f, 0.5250f, 0}, {-0.10f, 0.98f, -0.10f}},
+    {{-0.2900f, 0.5800f, 0}, {-0.07f, 0.75f, -0.66f}}, {{-0.1250f, 0.6496f, 0}, {-0.30f, 0.90f, -0.30f}},
+    {{-0.1180f, 0.7650f, 0}, {-0.29f, 0.95f, 0.10f}},  {{-0.1550f, 0.8280f, 0}, {0.40f, 0.90f, 0.12f}},
 };
-#define STATIONS ((int)(sizeof station / sizeof *station))
+#define STATIONS ((int)(sizeof stations / sizeof *stations))
+
+static v3 c_of(const station *s) { return s->c; }
+static v3 axis_of(const station *s) { return s->axis; }
 
 /* A closed curve as an open one: the stations around the wanted segment, at times -1 … 2. */
-static v3 around(int segment, float t, v3 (*part)(v4))
+static v3 around(int segment, float t, v3 (*part)(const station *))
 {
     amb_spline_key key[4];
     for (int i = 0; i < 4; i++)
-        key[i] = (amb_spline_key){(float)(i - 1), part(station[(segment + i - 1 + STATIONS) % STATIONS])};
+        key[i] = (amb_spline_key){(float)(i - 1), part(&stations[(segment + i - 1 + STATIONS) % STATIONS])};
     return amb_spline_at(key, 4, t);
 }
-
-static v3 last_part(v4 c) { return (v3){c.w, 0.0f, 0.0f}; }
 
 v4 amb_julia_path(double time, double period)
 {
@@ -30,7 +42,8 @@ v4 amb_julia_path(double time, double period)
     int segment = (int)way;
     segment = segment >= STATIONS ? STATIONS - 1 : segment;
     float t = (float)(way - segment);
-    return v4_of3(around(segment, t, v4_xyz), around(segment, t, last_part).x);
+    v3 c = around(segment, t, c_of), imaginary = v3_scale(v3_normalize(around(segment, t, axis_of)), c.y);
+    return (v4){c.x, imaginary.x, imaginary.y, imaginary.z};
 }
 
 /* Once around the set, now near, now far; one key more at either end closes the loop. */

@@ -83,7 +83,7 @@ static const amb_param table[] = {
     COLOR(light_color, 1.5f, 1.35f, 1.15f, "radiance of the light over pi"),
     COLOR(ambient_color, 0.03f, 0.035f, 0.05f, "light added to the environment's irradiance"),
     COLOR(inner_color, 0.48f, 0.05f, 0.015f, "albedo where the orbit comes near 0: the folds"),
-    COLOR(outer_color, 0.85f, 0.66f, 0.44f, "albedo elsewhere"),
+    COLOR(outer_color, 0.85f, 0.66f, 0.44f, "albedo of the ribs between them"),
     COLOR(specular_color, 1, 0.95f, 0.85f, "colour of the highlight"),
     FLOAT(ambient, "", 0, 10, 0.45f, "amount of ambient light"),
     FLOAT(diffuse, "", 0, 10, 0.7f, "amount of diffuse light"),
@@ -270,7 +270,7 @@ static julia_light shade_surface(const julia_uniforms *u, v3x direction, f32x t,
     r.position = v3x_add(v3x_splat(u->camera.position), v3x_scale(direction, t));
     julia_surface s = julia_surface_at(r.position, &u->set);
     v3x n = r.normal = v3x_sel(hit, s.normal, v3x_neg(direction)), l = v3x_splat(u->to_light);
-    f32x outer = f_smoothstep(f_set(0.03f), f_set(0.42f), s.trap);
+    f32x outer = f_smoothstep(f_set(0.03f), f_set(0.5f), s.trap);
     r.albedo = v3x_lerp(v3x_splat(k->inner_color), v3x_splat(k->outer_color), outer);
     f32x open = 1.0f - k->occlusion * (1.0f - openness(u, r.position, n));
 
