@@ -148,7 +148,7 @@ static const char *const march_fragment = COMMON
     "        vec3 position = eye + direction * t, n;\n"
     "        float trap;\n"
     "        surface(position, n, trap);\n"
-    "        vec3 albedo = mix(inner_color, outer_color, smoothstep(0.03, 0.42, trap));\n"
+    "        vec3 albedo = mix(inner_color, outer_color, smoothstep(0.03, 0.5, trap));\n"
     "        float open = 1.0 - occlusion * (1.0 - openness(position, n));\n"
     "        lit_rgb = albedo * (textureLod(irradiance, n, 0.0).rgb + ambient_color) * (ambient * open);\n"
     "        float lambert = max(dot(n, to_light), 0.0);\n"
