@@ -159,7 +159,39 @@ static const row *widest(const report *r, int threads)
             best = &r->row[i];
     return best;
 }
-static double ratio(const row *slow, const row *fast) { return slow && fast ? slow->median / fast->median : 0.0; }
+
+/* How much faster one row is than another. */
+typedef struct ratio {
+    char name[40];
+    double median, best, goal; /* goal 0: none */
+} ratio;
+enum { MAX_RATIOS = 4 };
+
+static int add_ratio(ratio *list, int count, const char *name, const row *slow, const row *fast, double goal)
+{
+    if (!slow || !fast)
+        return count;
+    ratio *r = &list[count];
+    *r = (ratio){.median = slow->median / fast->median, .best = slow->best / fast->best, .goal = goal};
+    snprintf(r->name, sizeof r->name, "%s", name);
+    return count + 1;
+}
+
+static int make_ratios(const settings *set, const report *r, ratio *list)
+{
+    int all = set->options.threads, count = 0;
+    const row *best = widest(r, all);
+    count = add_ratio(list, count, "against llvmpipe", find(r, 0, all), best, r->workload->peer_goal);
+    if (all > 1) {
+        char name[40];
+        snprintf(name, sizeof name, "1 to %d threads", all);
+        count = add_ratio(list, count, name, widest(r, 1), best, r->workload->threads_goal);
+    }
+    const row *v2_row = find(r, AMB_ISA_V2, all), *v3_row = find(r, AMB_ISA_V3, all),
+              *v4_row = find(r, AMB_ISA_V4, all);
+    count = add_ratio(list, count, "v2 to v3", v2_row, v3_row, r->workload->wide_goal);
+    return add_ratio(list, count, "v3 to v4", v3_row, v4_row, 0.0);
+}
 
 /* The row's rate against the peak of the same instruction set and threads; 0 when not counted. */
 static double of_peak(const report *peaks, const row *n, bool bytes)
@@ -175,15 +207,6 @@ static void name_row(const row *n, char *text, size_t size)
 {
     snprintf(text, size, "%s, %d thread%s", n->isa ? amb_isa_name(n->isa) : "llvmpipe", n->threads,
              n->threads == 1 ? "" : "s");
-}
-
-static void print_goal(const char *what, double value, double goal)
-{
-    if (value <= 0.0)
-        return;
-    printf("  %s %.2fx", what, value);
-    if (goal > 0.0)
-        printf(" (goal %.1fx: %s)", goal, value >= goal ? "met" : "missed");
 }
 
 static void print_report(const settings *set, const report *peaks, const report *r)
@@ -212,17 +235,14 @@ static void print_report(const settings *set, const report *peaks, const report 
         printf("  %-22s %10.2f %10.2f %10s %8s %10s %8s  %s\n", name, n->median * 1e3, n->best * 1e3, column[0],
                column[1], column[2], column[3], column[4]);
     }
-    int all = set->options.threads;
-    const row *best = widest(r, all);
-    print_goal("against llvmpipe", ratio(find(r, 0, all), best), r->workload->peer_goal);
-    if (all > 1) {
-        char what[32];
-        snprintf(what, sizeof what, "1 to %d threads", all);
-        print_goal(what, ratio(widest(r, 1), best), r->workload->threads_goal);
+    ratio list[MAX_RATIOS];
+    int ratios = make_ratios(set, r, list);
+    for (int i = 0; i < ratios; i++) {
+        printf("  %-22s %9.2fx %9.2fx", list[i].name, list[i].median, list[i].best);
+        if (list[i].goal > 0.0)
+            printf("  goal %.1fx: %s", list[i].goal, list[i].median >= list[i].goal ? "met" : "missed");
+        printf("\n");
     }
-    print_goal("v2 to v3", ratio(find(r, AMB_ISA_V2, all), find(r, AMB_ISA_V3, all)), r->workload->wide_goal);
-    print_goal("v3 to v4", ratio(find(r, AMB_ISA_V3, all), find(r, AMB_ISA_V4, all)), 0.0);
-    printf("\n");
     if (r->rmse >= 0.0)
         printf("  the two pictures differ by %.2g RMSE\n", r->rmse);
 }
@@ -256,7 +276,13 @@ static void print_json(const settings *set, const report *reports, int count)
                 printf(", \"%s\": %.6g", n->count.unit, n->count.items / n->median);
             printf("}");
         }
-        printf("]}");
+        printf("]");
+        ratio list[MAX_RATIOS];
+        int ratios = r->failure[0] ? 0 : make_ratios(set, r, list);
+        for (int k = 0; k < ratios; k++)
+            printf("%s{\"name\": \"%s\", \"median\": %.4f, \"best\": %.4f, \"goal\": %.2f}",
+                   k ? ", " : ", \"ratios\": [", list[k].name, list[k].median, list[k].best, list[k].goal);
+        printf(ratios ? "]}" : "}");
     }
     printf("\n  ]\n}\n");
 }
