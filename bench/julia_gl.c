@@ -42,7 +42,7 @@ static const char *const triangle =
                     "    }\n"                                                                                    \
                     "    float log_z = julia_log(square), g = log_z * scale, far = 1.0 + g * (1.0 + g * (1.0 / " \
                     "3.0));\n"                                                                                   \
-                    "    float d = (0.5 * log_z) * sqrt(square / (slope * (far * far)));\n"                      \
+                    "    float d = sqrt(square / slope) * ((0.5 * log_z) / far);\n"                              \
                     "    return square <= ESCAPE ? 0.0 : d;\n"                                                   \
                     "}\n"                                                                                        \
                     "vec3 eye_ray(float x, float y) { return normalize(ray_origin + (ray_dx * x + ray_dy * y)); }\n"

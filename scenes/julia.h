@@ -87,8 +87,10 @@ AMB_INLINE f32x julia_distance(v3x p, const void *user)
         scale = f_sel(bounded, scale * 0.25f, scale);
         last = f_sel(bounded, square, last);
     }
+    /* The root beside the logarithm, not after it: a march waits for this chain at every step. */
+    f32x root = f_sqrt(last / slope);
     f32x log_z = julia_log(last), g = log_z * scale, far = 1.0f + g * (1.0f + g * (1.0f / 3.0f));
-    f32x d = (0.5f * log_z) * f_sqrt(last / (slope * (far * far)));
+    f32x d = root * ((0.5f * log_z) / far);
     return f_sel(last <= JULIA_ESCAPE, f_set(0.0f), d);
 }
 
