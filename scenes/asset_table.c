@@ -3,13 +3,13 @@
 #include "scenes/builtin/builtin.h"
 
 /* An environment and its irradiance: two rows of one source. */
-#define ENVIRONMENT(NAME, ABOUT, VERSION, MAKE)                                                                       \
+#define ENVIRONMENT(NAME, ABOUT, PACK, VERSION, MAKE)                                                                 \
     {.name = NAME,                                                                                                    \
      .about = ABOUT,                                                                                                  \
      .kind = ASSET_ENVIRONMENT,                                                                                       \
      .srgb = true,                                                                                                    \
      .user_file = {NAME ".exr", NAME ".hdr", NAME ".ktx", NAME ".png", NAME ".jpg", NAME ".jpeg"},                    \
-     .pack_file = NAME ".ktx",                                                                                        \
+     .pack_file = PACK,                                                                                               \
      .version = VERSION,                                                                                              \
      .make_texture = MAKE},                                                                                           \
     {                                                                                                                 \
@@ -25,8 +25,8 @@
     }
 
 const asset_row asset_table[] = {
-    ENVIRONMENT("env/outdoor", "outdoor light: an HDR cube map or panorama", 1, amb_builtin_sky),
-    ENVIRONMENT("env/studio", "indoor light: an HDR cube map or panorama", 1, amb_builtin_studio),
+    ENVIRONMENT("env/outdoor", "outdoor light: an HDR cube map or panorama", "env/outdoor.exr", 1, amb_builtin_sky),
+    ENVIRONMENT("env/studio", "indoor light: an HDR cube map or panorama", "env/studio.ktx", 1, amb_builtin_studio),
     {.name = "mercury/color",
      .about = "map of Mercury, longitude-latitude, north on top",
      .kind = ASSET_TEXTURE,

@@ -178,22 +178,22 @@ static void a_damaged_file_is_an_error_and_never_skipped(void **state)
         char name[64];
         const amb_texture *texture;
         amb_error error;
-        snprintf(name, sizeof name, "%s/env/outdoor.ktx", kinds[i]);
+        snprintf(name, sizeof name, "%s/env/studio.ktx", kinds[i]);
         copy("Makefile", name);
         amb_assets *assets = open_assets();
-        assert_int_equal(amb_assets_texture(assets, "env/outdoor", &texture, &error), AMB_ERROR_FORMAT);
+        assert_int_equal(amb_assets_texture(assets, "env/studio", &texture, &error), AMB_ERROR_FORMAT);
         assert_null(texture);
         assert_non_null(strstr(error.detail, in_folder(name)));
-        assert_int_equal(amb_assets_texture(assets, "env/outdoor/irradiance", &texture, &error), AMB_ERROR_FORMAT);
-        assert_string_equal(find(assets, "env/outdoor").sha256, "");
+        assert_int_equal(amb_assets_texture(assets, "env/studio/irradiance", &texture, &error), AMB_ERROR_FORMAT);
+        assert_string_equal(find(assets, "env/studio").sha256, "");
         amb_assets_close(&assets);
         start(NULL);
     }
     const amb_texture *texture;
     amb_error error;
-    put_panorama("user/env/outdoor.exr", 48, 32);
+    put_panorama("user/env/studio.exr", 48, 32);
     amb_assets *assets = open_assets();
-    assert_int_equal(amb_assets_texture(assets, "env/outdoor", &texture, &error), AMB_ERROR_FORMAT);
+    assert_int_equal(amb_assets_texture(assets, "env/studio", &texture, &error), AMB_ERROR_FORMAT);
     assert_non_null(strstr(error.detail, "48x32"));
     amb_assets_close(&assets);
 }

@@ -19,8 +19,8 @@ give_up() {
 packages() { awk '$1 == "package" { print $2 }' "$list"; }
 # field PACKAGE N: the N-th word of its package line
 field() { awk -v name="$1" -v n="$2" '$1 == "package" && $2 == name { print $n }' "$list"; }
-# files PACKAGE: its "TARGET SHA-256 PATH" lines
-files() { awk -v name="$1" '$1 == "package" { here = $2 == name } here && $1 == "file" { print $2, $3, $4 }' "$list"; }
+# files PACKAGE: its "TARGET SHA-256 PATH [zip]" lines
+files() { awk -v name="$1" '$1 == "package" { here = $2 == name } here && $1 == "file" { print $2, $3, $4, $5 }' "$list"; }
 credits() { awk -v name="$1" '$1 == "package" { here = $2 == name } here && $1 == "credit" { $1 = ""; print }' "$list"; }
 
 is_whole() { # FILE SHA-256
@@ -28,7 +28,7 @@ is_whole() { # FILE SHA-256
 }
 
 is_complete() { # PACKAGE
-    files "$1" | while read -r target sha path; do
+    files "$1" | while read -r target sha path how; do
         is_whole "$folder/$target" "$sha" || exit 1
     done
 }
@@ -40,7 +40,7 @@ write_credits() {
         for package in $(packages); do
             is_complete "$package" || continue
             echo
-            files "$package" | while read -r target sha path; do echo "$target"; done
+            files "$package" | while read -r target sha path how; do echo "$target"; done
             credits "$package"
         done
     } > "$folder/.ATTRIBUTION.part"
@@ -76,8 +76,11 @@ keep() { # PACKAGE
     files "$1" | cut -d ' ' -f 3 > "$work/patterns"
     dpkg-deb --fsys-tarfile "$work/$1.deb" 2> "$work/log" |
         tar -x -C "$work/out" --wildcards -T "$work/patterns" 2>> "$work/log" || return 1
-    files "$1" | while read -r target sha path; do
+    files "$1" | while read -r target sha path how; do
         found=$(find "$work/out" -type f -path "$path" | head -n 1)
+        if [ "$how" = zip ] && exrmaketiled -o -z zip "$found" "$work/packed.exr" 2>> "$work/log"; then
+            found=$work/packed.exr
+        fi
         is_whole "${found:-/nonexistent}" "$sha" || exit 1
         mkdir -p "$(dirname "$folder/$target")"
         mv "$found" "$folder/$target"
