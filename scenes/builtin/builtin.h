@@ -19,7 +19,7 @@ amb_status amb_builtin_stars(const amb_context *context, amb_texture **out, amb_
 amb_status amb_builtin_mercury(const amb_context *context, amb_texture **out, amb_error *error);
 
 /* The statue of scene lucy: a winged Victory with torch and wreath on a plinth. World units: the figure is about 1
- * tall, its feet at y = 0, y up, facing +z; the plinth reaches down to y = -0.135. Unit normals, no UVs; about 650,000
+ * tall, its feet at y = 0, y up, facing +z; the plinth reaches down to y = -0.135. Unit normals, no UVs; about 750,000
  * triangles, a closed manifold. Errors: MEMORY. */
 amb_status amb_builtin_statue(const amb_context *context, amb_mesh **out, amb_error *error);
 
