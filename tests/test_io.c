@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cmocka.h>
 
@@ -264,6 +265,39 @@ static void exr_with_a_huge_header_takes_no_memory(void **state)
     free(data);
 }
 
+/* Pictures that claim 10⁶ pixels a side, each in its own way: refused before memory is taken. */
+static void pictures_with_huge_headers(void **state)
+{
+    uint8_t png[] = "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\x0f\x42\x40\0\x0f\x42\x40\x08\x06\0\0\0CRC4"
+                    "\0\0\0\0IEND\xae\x42\x60\x82";
+    uint8_t jpeg[] = "\xff\xd8\xff\xc0\0\x0b\x08\xff\xff\xff\xff\x01\x01\x11\0\xff\xd9";
+    uint8_t hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n\2\2";
+    uint32_t ktx[16] = {0, 0, 0, 0x04030201, 0x8c3b, 4, 0x1907, 0x8c3a, 0x1907, 1000000, 1000000, 0, 0, 6, 1, 0};
+    const struct {
+        const void *data;
+        size_t bytes;
+    } files[] = {{png, sizeof png - 1}, {jpeg, sizeof jpeg - 1}, {hdr, sizeof hdr - 1}, {ktx, sizeof ktx}};
+    uint32_t sum = (uint32_t)crc32(0, png + 12, 17);
+    struct rusage before, after;
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        png[29 + i] = (uint8_t)(sum >> (24 - 8 * i));
+    memcpy(ktx, "\xabKTX 11\xbb\r\n\x1a\n", 12);
+    getrusage(RUSAGE_SELF, &before);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        amb_texture *texture;
+        amb_error error;
+        amb_status status = amb_read_texture_memory(files[i].data, files[i].bytes, "huge", true, &texture, &error);
+        if (status != AMB_ERROR_LIMIT && status != AMB_ERROR_FORMAT)
+            fail_msg("file %zu: status %d", i, status);
+        assert_null(texture);
+        if (i != 0) /* libstb refuses such a PNG itself */
+            assert_int_equal(status, AMB_ERROR_LIMIT);
+    }
+    getrusage(RUSAGE_SELF, &after);
+    assert_true(after.ru_maxrss - before.ru_maxrss < 64 * 1024); /* KiB */
+}
+
 static void png_round_trips(void **state)
 {
     static const int sizes[][2] = {{1, 1}, {256, 1}, {3, 257}, {31, 17}};
@@ -439,6 +473,7 @@ int main(void)
         cmocka_unit_test(exr_keeps_metadata_and_equal_frames_are_equal_files),
         cmocka_unit_test(exr_of_other_programs),
         cmocka_unit_test(exr_with_a_huge_header_takes_no_memory),
+        cmocka_unit_test(pictures_with_huge_headers),
         cmocka_unit_test(png_round_trips),
         cmocka_unit_test(png_quantises_to_nearest_and_contains_bad_values),
         cmocka_unit_test(images_of_other_programs),
