@@ -34,7 +34,7 @@ static int32_t *make_packing(uint32_t lanes)
 static bool make_scratch(const amb_pass *pass, raster_scratch *s)
 {
     const size_t vertices = RASTER_CHUNK_VERTICES + 16, triangles = RASTER_CHUNK_TRIANGLES + 16; /* lanes of padding */
-    size_t side = (size_t)pass->tile_size;
+    const size_t spare = (size_t)16 * (size_t)pass->planes * (size_t)pass->samples;              /* a block */
     s->lookup = calloc(LOOKUP_SLOTS, sizeof *s->lookup);
     s->index = malloc(vertices * sizeof *s->index);
     s->instance = malloc(vertices * sizeof *s->instance);
@@ -42,7 +42,7 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
     s->code = malloc(vertices * sizeof *s->code);
     s->corner[0] = malloc(4 * triangles * sizeof *s->corner[0]);
     s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
-    s->tile = aligned_alloc(64, (side * side + 16) * (size_t)pass->planes * sizeof *s->tile);
+    s->tile = aligned_alloc(64, (raster_tile_floats(pass) + spare) * sizeof *s->tile);
     s->packing = make_packing((uint32_t)amb_context_isa(pass->context));
     if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner[0] || !s->group || !s->tile ||
         !s->packing)
@@ -119,23 +119,32 @@ static bool tile_is_touched(const amb_pass *pass, int tile)
 static void tile_job(void *user, int index, int thread)
 {
     amb_pass *pass = user;
-    if (!tile_is_touched(pass, index))
+    bool waits = pass->last_batch && pass->samples > 1 && pass->tile_store[index]; /* for its samples' average */
+    if (!tile_is_touched(pass, index) && !waits)
         return;
     AMB_DISPATCH(amb_context_isa(pass->context), raster_tile)(pass, index, &pass->scratch[thread], thread);
     pass->tile_started[index] = 1;
 }
 
-static bool run_batch(amb_pass *pass)
+static bool any_failed(const amb_pass *pass)
+{
+    for (int i = 0; i < pass->threads; i++)
+        if (pass->scratch[i].failed)
+            return true;
+    return false;
+}
+
+static bool run_batch(amb_pass *pass, bool last)
 {
     if (pass->chunk_count == 0)
         return true;
+    pass->last_batch = last;
     amb_parallel_for(pass->context, (int)pass->chunk_count, chunk_job, pass);
-    for (int i = 0; i < pass->threads; i++)
-        if (pass->scratch[i].failed)
-            return false;
+    if (any_failed(pass))
+        return false;
     amb_parallel_for(pass->context, pass->tiles_x * pass->tiles_y, tile_job, pass);
     pass->chunk_count = 0;
-    return true;
+    return !any_failed(pass);
 }
 
 /* ---- chunks and batches ----------------------------------------------------------------------------------------- */
@@ -171,7 +180,7 @@ static bool run_draws(amb_pass *pass)
             size_t more = chunk_bytes(pass, count, stride);
             if (pass->chunk_count == RASTER_BATCH_CHUNKS ||
                 (pass->chunk_count > 0 && bytes + more > pass->batch_bytes)) {
-                if (!run_batch(pass))
+                if (!run_batch(pass, false))
                     return false;
                 bytes = 0;
             }
@@ -187,7 +196,7 @@ static bool run_draws(amb_pass *pass)
             first += count;
         } while (first < draw->triangles);
     }
-    return run_batch(pass);
+    return run_batch(pass, true);
 }
 
 /* ---- finish ----------------------------------------------------------------------------------------------------- */

@@ -84,28 +84,39 @@ static inline bool tests_late(const amb_draw *draw)
            (s->on && (s->front.fail | s->front.depth_fail | s->back.fail | s->back.depth_fail) != AMB_STENCIL_KEEP);
 }
 
+static inline void run_shader(const raster_tile *tile, const amb_draw *draw, const amb_fs_in *in, amb_fs_out *out)
+{
+    out->depth = in->depth;
+    out->live = in->live;
+    for (int i = 0; i < tile->pass->target_count; i++)
+        out->color[i] = (v4x){0};
+    for (int i = tile->pass->target_count; i < 2; i++)
+        out->color[i] = (v4x){0}; /* may be a second source of blending, or an alpha that means coverage */
+    draw->fragment(in, out);
+    out->live &= in->live;
+    if (draw->writes_depth)
+        out->depth = f_saturate(out->depth);
+    else
+        out->depth = in->depth;
+    tile->stats->blocks_shaded++;
+    tile->stats->fragments_shaded += (uint64_t)__builtin_popcount(m_bits(in->live));
+}
+
 /* Runs the fragment shader and everything after it on the lanes of in->live. */
 static inline void shade_group(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
                                bool late, bool packed)
 {
     amb_fs_out out;
-    out.depth = in->depth;
-    out.live = in->live;
-    for (int i = 0; i < tile->pass->target_count; i++)
-        out.color[i] = (v4x){0};
-    if (tile->pass->target_count < 2)
-        out.color[1] = (v4x){0}; /* may be a second source of blending */
-    draw->fragment(in, &out);
-    maskx live = in->live & out.live;
-    f32x depth = draw->writes_depth ? f_saturate(out.depth) : in->depth;
-    tile->stats->blocks_shaded++;
-    tile->stats->fragments_shaded += (uint64_t)__builtin_popcount(m_bits(in->live));
+    run_shader(tile, draw, in, &out);
+    maskx live = out.live;
+    if (draw->alpha_to_coverage)
+        live &= out.color[0].w >= 0.5f;
     if (late || draw->stencil.on)
-        live = update_depth_stencil(tile, draw, at, in->front, depth, live, packed);
+        live = update_depth_stencil(tile, draw, at, 0, in->front, out.depth, live, packed);
     else if (!draw->depth_write_off)
-        store_plane(at, 0, depth, live, packed);
+        store_plane(at, 0, out.depth, live, packed);
     if (m_any(live))
-        store_colors(tile, draw, at, &out, live, packed);
+        store_colors(tile, draw, at, 0, &out, live, packed);
 }
 
 /* Gives the covered lanes of a block, minus those that fail an early test. */
@@ -114,10 +125,10 @@ static inline maskx live_lanes(const raster_tile *tile, const amb_draw *draw, co
 {
     if (!draw->fragment) {
         if (m_any(covered))
-            update_depth_stencil(tile, draw, at, front, depth, covered, false);
+            update_depth_stencil(tile, draw, at, 0, front, depth, covered, false);
         return m_set(false);
     }
-    return late ? covered : covered & output_tests(tile, draw, at, front, depth);
+    return late ? covered : covered & output_tests(tile, draw, at, 0, front, depth);
 }
 
 /* Window coordinates of pixels packed as x | y << 16. */
@@ -269,19 +280,81 @@ static inline void make_attributes(raster_shading *s)
     s->attributes = true;
 }
 
-/* A block of one triangle, shaded at once. */
-static inline void shade_whole(const raster_tile *tile, raster_shading *s, const raster_pixels *at, const f32x p[3],
-                               amb_fs_in *in, bool late)
+/* The varyings of a block of one triangle. */
+static inline void interpolate_block(raster_shading *s, const f32x p[3], f32x *varying)
 {
-    f32x varying[AMB_MAX_VARYINGS + 1];
     int floats = s->draw->varying_floats;
-    in->varyings = varying;
     if (floats > 0 && !s->attributes)
         make_attributes(s);
     f32x scale = 1.0f / ((p[0] + p[1]) + p[2]), b1 = p[1] * scale, b2 = p[2] * scale;
     for (int i = 0; i < floats; i++)
         varying[i] = (s->base[i] + s->delta1[i] * b1) + s->delta2[i] * b2;
-    shade_group(tile, s->draw, at, in, late, false);
+}
+
+/* Depth from the edge functions. */
+static inline f32x depth_at(const raster_shading *s, const f32x e[3])
+{
+    return f_saturate(((s->z0 + s->dz1 * (e[1] * s->inverse_area)) + s->dz2 * (e[2] * s->inverse_area)) + s->bias);
+}
+
+/* The samples of which ⌊n·alpha + ½⌋ is above `sample`. */
+static inline maskx alpha_covers(f32x alpha, int samples, int sample)
+{
+    return f_floor(f_saturate(alpha) * (float)samples + 0.5f) > (float)sample;
+}
+
+/* What follows coverage when pixels have samples. live: of each sample, the lanes that are covered and have passed the
+ * early tests. */
+static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
+                                 const maskx live[RASTER_MAX_SAMPLES], const f32x depth[RASTER_MAX_SAMPLES])
+{
+    const int samples = tile->pass->samples;
+    amb_fs_out out;
+    run_shader(tile, draw, in, &out);
+    for (int i = 0; i < samples; i++) {
+        maskx written = live[i] & out.live;
+        if (draw->alpha_to_coverage)
+            written &= alpha_covers(out.color[0].w, samples, i);
+        if (!m_any(written))
+            continue;
+        int base = i * tile->pass->planes;
+        written = update_depth_stencil(tile, draw, at, base, in->front, draw->writes_depth ? out.depth : depth[i],
+                                       written, false);
+        if (m_any(written))
+            store_colors(tile, draw, at, base, &out, written, false);
+    }
+}
+
+/* A block of which samples are covered. e: the edge functions at the pixels' centres. */
+static inline void fragment_samples(const raster_tile *tile, raster_shading *s, int bx, int by,
+                                    const maskx cover[RASTER_MAX_SAMPLES], const f32x depth[RASTER_MAX_SAMPLES],
+                                    const f32x e[3])
+{
+    const amb_draw *draw = s->draw;
+    const raster_pixels at = {{block_at(tile, bx, by)}};
+    const bool late = tests_late(draw);
+    const maskx clip = inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
+    maskx live[RASTER_MAX_SAMPLES], any = m_set(false);
+    for (int i = 0; i < tile->pass->samples; i++) {
+        int base = i * tile->pass->planes;
+        live[i] = cover[i] & clip;
+        if (!draw->fragment)
+            update_depth_stencil(tile, draw, &at, base, front, depth[i], live[i], false);
+        else if (!late)
+            live[i] &= output_tests(tile, draw, &at, base, front, depth[i]);
+        any |= live[i];
+    }
+    if (!draw->fragment || !m_any(any))
+        return;
+    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
+    f32x varying[AMB_MAX_VARYINGS + 1];
+    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .live = any, .front = front};
+    in.thread = tile->thread;
+    in.depth = depth_at(s, e);
+    in.primitive = i_set((int32_t)(s->primitive_front & 0x7fffffffu));
+    set_position(&in, block_position(tile, bx, by));
+    interpolate_block(s, p, varying);
+    shade_samples(tile, draw, &at, &in, live, depth);
 }
 
 /* A covered block of a triangle. e: the three edge functions at the lanes' pixel centres, in units of 1/256 of the
@@ -294,6 +367,16 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     const raster_pixels at = {{block_at(tile, bx, by)}};
     if (!s->prepared)
         prepare_shading(s);
+    if (tile->pass->samples > 1) { /* a line or a point: all samples of its pixels */
+        maskx samples[RASTER_MAX_SAMPLES];
+        f32x depths[RASTER_MAX_SAMPLES];
+        for (int i = 0; i < tile->pass->samples; i++) {
+            samples[i] = cover;
+            depths[i] = depth_at(s, e);
+        }
+        fragment_samples(tile, s, bx, by, samples, depths, e);
+        return;
+    }
     maskx covered = cover & inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
 #if AMB_LANES > 4
     flush_overlap(tile, queue, at.quad[0], m_bits(covered));
@@ -317,7 +400,10 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     amb_fs_in in = {.uniforms = draw->uniforms, .depth = depth, .live = live, .front = front, .thread = tile->thread};
     in.primitive = i_set((int32_t)(s->primitive_front & 0x7fffffffu));
     set_position(&in, block_position(tile, bx, by));
-    shade_whole(tile, s, &at, p, &in, late);
+    f32x varying[AMB_MAX_VARYINGS + 1];
+    in.varyings = varying;
+    interpolate_block(s, p, varying);
+    shade_group(tile, draw, &at, &in, late, false);
 }
 
 /* A block of a full-screen draw. */
@@ -326,6 +412,22 @@ static inline void fragment_screen(const raster_tile *tile, const amb_draw *draw
     const raster_pixels at = {{block_at(tile, bx, by)}};
     const bool late = tests_late(draw);
     amb_fs_in in = {.uniforms = draw->uniforms, .depth = f_set(1.0f), .front = m_set(true), .thread = tile->thread};
+    if (tile->pass->samples > 1) {
+        maskx live[RASTER_MAX_SAMPLES];
+        f32x depth[RASTER_MAX_SAMPLES];
+        in.live = m_set(false);
+        for (int i = 0; i < tile->pass->samples; i++) {
+            depth[i] = in.depth;
+            live[i] = inside_clip(tile, bx, by);
+            if (!late)
+                live[i] &= output_tests(tile, draw, &at, i * tile->pass->planes, in.front, in.depth);
+            in.live |= live[i];
+        }
+        set_position(&in, block_position(tile, bx, by));
+        if (m_any(in.live))
+            shade_samples(tile, draw, &at, &in, live, depth);
+        return;
+    }
     in.live = live_lanes(tile, draw, &at, inside_clip(tile, bx, by), in.depth, in.front, late);
     if (!m_any(in.live))
         return;

@@ -16,7 +16,8 @@
 #define RASTER_SUBPIXEL 256 /* fixed-point steps a pixel */
 #define RASTER_GUARD_PIXELS \
     262144.0 /* the guard band reaches at most this far from the window's centre, at least half */
-#define RASTER_CHUNK_TRIANGLES 4096 /* triangles a chunk, before clipping */
+#define RASTER_GRID_PIXELS 524288.0f /* window coordinates beyond are nowhere */
+#define RASTER_CHUNK_TRIANGLES 4096  /* triangles a chunk, before clipping */
 #define RASTER_CHUNK_VERTICES (3 * RASTER_CHUNK_TRIANGLES)
 #define RASTER_POLYGON 9      /* vertices of a triangle clipped by six planes */
 #define RASTER_LARGE_TILES 16 /* triangles on more tiles than this are not binned but offered to every tile */
@@ -25,6 +26,7 @@
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
 #define RASTER_MAX_POINT 4096.0f
 #define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */
+#define RASTER_MAX_SAMPLES 8
 #define RASTER_TILE 64
 
 /* Clip codes of a vertex. */
@@ -109,9 +111,13 @@ struct amb_pass {
     int target_count;
     int channel_first[AMB_MAX_TARGETS]; /* plane of an attachment's first channel; plane 0 is depth */
     int stencil_plane;                  /* 0: none */
-    int planes;
+    int planes;                         /* of one sample */
+    int samples;                        /* 1, 2, 4 or 8 */
+    int32_t low_round, high_round; /* pixels that may be covered by lo…hi: (lo + low) >> 8 … (hi - high) >> 8 */
+    float **tile_store;            /* per tile, between batches: all its samples; NULL at one sample */
     int tile_size, tiles_x, tiles_y;
     size_t batch_bytes;
+    bool last_batch;
     float guard_x, guard_y;
     uint8_t *tile_started; /* per tile: its images hold pixels of this pass */
 
@@ -130,6 +136,11 @@ bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_by
 /* Room for that many vertices or triangles in all; false when out of memory. */
 bool raster_reserve_vertices(raster_chunk *chunk, size_t count);
 bool raster_reserve_triangles(raster_chunk *chunk, size_t count);
+/* Floats of a tile in a worker's memory, without the spare block. */
+static inline size_t raster_tile_floats(const amb_pass *pass)
+{
+    return (size_t)pass->tile_size * (size_t)pass->tile_size * (size_t)pass->planes * (size_t)pass->samples;
+}
 
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch);
 /* One triangle the lanes leave alone: clipped, or too large for 32-bit areas. Sets scratch->failed. */

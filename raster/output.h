@@ -20,9 +20,12 @@ typedef struct raster_tile {
     amb_pass_stats *stats;
 } raster_tile;
 
+/* Planes of a block: those of sample 0, then of sample 1, … */
+static inline int block_planes(const raster_tile *tile) { return tile->pass->planes * tile->pass->samples; }
+
 static inline float *block_at(const raster_tile *tile, int bx, int by)
 {
-    return tile->data + (size_t)(by * tile->blocks_x + bx) * (size_t)tile->pass->planes * AMB_LANES;
+    return tile->data + (size_t)(by * tile->blocks_x + bx) * (size_t)block_planes(tile) * AMB_LANES;
 }
 
 /* Lanes inside the target and the draw's scissor. */
@@ -163,9 +166,9 @@ static inline i32x stencil_result(amb_stencil_op op, i32x stored, int reference)
     }
 }
 
-static inline i32x load_stencil(const raster_tile *tile, const raster_pixels *at, bool packed)
+static inline i32x load_stencil(const raster_tile *tile, const raster_pixels *at, int base, bool packed)
 {
-    return f_to_i(load_plane(at, tile->pass->stencil_plane, packed)) & 255;
+    return f_to_i(load_plane(at, base + tile->pass->stencil_plane, packed)) & 255;
 }
 
 /* Which lanes pass the stencil test of the side they show? */
@@ -177,13 +180,13 @@ static inline maskx stencil_matches(const amb_stencil *s, i32x stored, maskx fro
            (~front & stencil_passes(s->back.compare, reference, stored & mask));
 }
 
-/* Which lanes pass the draw's stencil and depth tests. */
-static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
-                                 f32x depth)
+/* Which lanes pass the draw's stencil and depth tests. base: the first plane of the sample, here and below. */
+static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
+                                 maskx front, f32x depth)
 {
-    maskx passed = depth_passes(draw->depth_compare, depth, load_plane(at, 0, false));
+    maskx passed = depth_passes(draw->depth_compare, depth, load_plane(at, base, false));
     if (draw->stencil.on)
-        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, false), front);
+        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, base, false), front);
     return passed;
 }
 
@@ -197,23 +200,23 @@ static inline i32x stencil_update(const amb_stencil *s, const amb_stencil_face *
 
 /* Tests the live lanes for good, writes depth and stencil, and returns the lanes whose colour is to be written. */
 static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
-                                         maskx front, f32x depth, maskx live, bool packed)
+                                         int base, maskx front, f32x depth, maskx live, bool packed)
 {
     const amb_stencil *s = &draw->stencil;
-    maskx near_enough = depth_passes(draw->depth_compare, depth, load_plane(at, 0, packed)),
+    maskx near_enough = depth_passes(draw->depth_compare, depth, load_plane(at, base, packed)),
           passed = live & near_enough;
     if (s->on) {
-        i32x stored = load_stencil(tile, at, packed);
+        i32x stored = load_stencil(tile, at, base, packed);
         int write = 255 & ~s->write_mask_off;
         maskx match = stencil_matches(s, stored, front);
         i32x result = i_sel(front, stencil_update(s, &s->front, stored, match, near_enough),
                             stencil_update(s, &s->back, stored, match, near_enough));
         result = (result & write) | (stored & ~write);
-        store_plane(at, tile->pass->stencil_plane, i_to_f(result), live, packed);
+        store_plane(at, base + tile->pass->stencil_plane, i_to_f(result), live, packed);
         passed &= match;
     }
     if (!draw->depth_write_off)
-        store_plane(at, 0, depth, passed, packed);
+        store_plane(at, base, depth, passed, packed);
     return passed;
 }
 
@@ -327,7 +330,7 @@ static __attribute__((noinline)) void store_general(const raster_pixels *at, int
     }
 }
 
-static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
+static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
                                 const amb_fs_out *out, maskx live, bool packed)
 {
     const amb_pass *pass = tile->pass;
@@ -335,7 +338,7 @@ static inline void store_colors(const raster_tile *tile, const amb_draw *draw, c
         if (draw->targets_off >> i & 1u)
             continue;
         const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
-        int plane = pass->channel_first[i], channels = pass->target.color[i]->channels;
+        int plane = base + pass->channel_first[i], channels = pass->target.color[i]->channels;
         if (draw->blend[i] == AMB_BLEND_EQUATION || draw->channels_off[i] != 0)
             store_general(at, plane, channels, draw, i, out, live, packed);
         else if (channels == 4) /* the usual case, unrolled */

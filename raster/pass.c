@@ -74,6 +74,11 @@ static amb_status check_target(amb_pass *pass, amb_error *error)
         pass->channel_first[i] = pass->planes;
         pass->planes += t->color[i]->channels;
     }
+    if (t->samples != 0 && t->samples != 1 && t->samples != 2 && t->samples != 4 && t->samples != 8)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: samples is %d; 0, 1, 2, 4 and 8 are allowed", t->samples);
+    pass->samples = t->samples > 1 ? t->samples : 1;
+    pass->low_round = pass->samples > 1 ? 0 : RASTER_SUBPIXEL / 2 - 1;
+    pass->high_round = pass->samples > 1 ? 0 : RASTER_SUBPIXEL / 2;
     amb_status status = t->depth ? check_plain(pass, t->depth, "depth", error) : AMB_OK;
     if (status == AMB_OK && t->stencil)
         status = check_plain(pass, t->stencil, "stencil", error);
@@ -114,7 +119,9 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
     pass->guard_x = guard_factor(pass->width);
     pass->guard_y = guard_factor(pass->height);
     pass->tile_started = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y, 1);
-    if (!pass->tile_started) {
+    if (pass->samples > 1)
+        pass->tile_store = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y, sizeof *pass->tile_store);
+    if (!pass->tile_started || (pass->samples > 1 && !pass->tile_store)) {
         status = amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory for %d×%d tiles", pass->tiles_x, pass->tiles_y);
         goto error;
     }
@@ -128,7 +135,8 @@ error:
 amb_status amb_pass_begin(const amb_context *context, const amb_target *target, amb_pass **out, amb_error *error)
 {
     size_t bytes = context ? RASTER_BATCH_BYTES / 2 * (size_t)amb_context_threads(context) : 0;
-    return raster_pass_begin(context, target, RASTER_TILE, bytes > RASTER_BATCH_BYTES ? bytes : RASTER_BATCH_BYTES, out,
+    int tile = target && target->samples > 1 ? RASTER_TILE / 2 : RASTER_TILE; /* many samples must fit the cache too */
+    return raster_pass_begin(context, target, tile, bytes > RASTER_BATCH_BYTES ? bytes : RASTER_BATCH_BYTES, out,
                              error);
 }
 
@@ -357,6 +365,9 @@ void amb_pass_close(amb_pass **pass)
         free_chunk(&p->chunk[i]);
     for (int i = 0; i < p->threads; i++)
         free_scratch(&p->scratch[i]);
+    for (int i = 0; p->tile_store && i < p->tiles_x * p->tiles_y; i++)
+        free(p->tile_store[i]);
+    free(p->tile_store);
     free(p->draw);
     free(p->chunk);
     free(p->scratch);

@@ -7,20 +7,17 @@ static int32_t max2(int32_t a, int32_t b) { return a > b ? a : b; }
 static int32_t min3(int32_t a, int32_t b, int32_t c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
 static int32_t max3(int32_t a, int32_t b, int32_t c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
 
-/* First and last pixel whose centre lies in [lo, hi] (1/256 pixel). */
-static int32_t first_pixel(int32_t lo) { return (lo + 127) >> 8; }
-static int32_t last_pixel(int32_t hi) { return (hi - 128) >> 8; }
-
 /* Culls and bounds the window triangle and appends what remains. The array has room. */
-static void add_triangle(raster_chunk *chunk, raster_scratch *scratch, const uint32_t v[3], uint32_t primitive)
+static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, const uint32_t v[3],
+                         uint32_t primitive)
 {
     const amb_draw *draw = &chunk->draw->state;
     const int32_t *x = chunk->x, *y = chunk->y;
     const uint32_t a = v[0], b = v[1], c = v[2];
     int64_t area = (int64_t)(x[b] - x[a]) * (y[c] - y[a]) - (int64_t)(x[c] - x[a]) * (y[b] - y[a]);
     bool front = (area > 0) == draw->front_clockwise; /* y points down: positive is clockwise on the screen */
-    int32_t x0 = first_pixel(min3(x[a], x[b], x[c])), x1 = last_pixel(max3(x[a], x[b], x[c]));
-    int32_t y0 = first_pixel(min3(y[a], y[b], y[c])), y1 = last_pixel(max3(y[a], y[b], y[c]));
+    int32_t x0 = (min3(x[a], x[b], x[c]) + pass->low_round) >> 8, x1 = (max3(x[a], x[b], x[c]) - pass->high_round) >> 8;
+    int32_t y0 = (min3(y[a], y[b], y[c]) + pass->low_round) >> 8, y1 = (max3(y[a], y[b], y[c]) - pass->high_round) >> 8;
     const raster_draw *limits = chunk->draw;
     x0 = max2(x0, limits->x0), x1 = min2(x1, limits->x1 - 1), y0 = max2(y0, limits->y0), y1 = min2(y1, limits->y1 - 1);
     if (area == 0 || x0 > x1 || y0 > y1 || (draw->cull == AMB_CULL_BACK && !front) ||
@@ -40,10 +37,15 @@ static void add_triangle(raster_chunk *chunk, raster_scratch *scratch, const uin
 
 /* ---- the clipped ones ------------------------------------------------------------------------------------------- */
 
-/* Window coordinates rounded half to even, as the vertex stage does. */
-static int32_t snap(float ndc, float scale, float offset)
+/* Window coordinates rounded half to even, as the vertex stage does; false when they are off the grid, which only
+ * cancellation between huge and tiny clip coordinates can bring about. */
+static bool snap(float ndc, float scale, float offset, int32_t *fixed)
 {
-    return (int32_t)f_round((ndc * scale + offset) * (float)RASTER_SUBPIXEL);
+    float window = ndc * scale + offset;
+    if (!(window >= -RASTER_GRID_PIXELS && window <= RASTER_GRID_PIXELS))
+        return false;
+    *fixed = (int32_t)f_round(window * (float)RASTER_SUBPIXEL);
+    return true;
 }
 
 bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_t corner[3], const double clip[4],
@@ -53,10 +55,13 @@ bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_
     if (!(w >= FLT_MIN) || !f_is_finite(x) || !f_is_finite(y) || !f_is_finite(z) || !f_is_finite(w))
         return false;
     float half_w = 0.5f * (float)pass->width, half_h = 0.5f * (float)pass->height;
+    int32_t fixed_x, fixed_y;
+    if (!snap(x / w, half_w, half_w, &fixed_x) || !snap(y / w, -half_h, half_h, &fixed_y))
+        return false;
     *number = chunk->vertex_count++;
+    chunk->x[*number] = fixed_x;
+    chunk->y[*number] = fixed_y;
     raster_vertex *v = raster_vertex_at(chunk, *number);
-    chunk->x[*number] = snap(x / w, half_w, half_w);
-    chunk->y[*number] = snap(y / w, -half_h, half_h);
     v->z = z / w;
     v->inverse_w = 1.0f / w;
     const raster_vertex *a = raster_vertex_at(chunk, corner[0]), *b = raster_vertex_at(chunk, corner[1]),
@@ -98,7 +103,7 @@ static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scra
         }
     }
     for (int i = 2; i < polygon.count; i++)
-        add_triangle(chunk, scratch, (uint32_t[3]){number[0], number[i - 1], number[i]}, corner[3]);
+        add_triangle(pass, chunk, scratch, (uint32_t[3]){number[0], number[i - 1], number[i]}, corner[3]);
     return true;
 }
 
@@ -114,7 +119,7 @@ void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch 
     else if (any != 0)
         scratch->failed |= !clip_triangle(pass, chunk, scratch, corner, any);
     else if (raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + 1))
-        add_triangle(chunk, scratch, corner, corner[3]);
+        add_triangle(pass, chunk, scratch, corner, corner[3]);
     else
         scratch->failed = true;
 }

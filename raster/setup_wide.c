@@ -11,14 +11,14 @@ typedef struct corners {
     i32x number[3], x[3], y[3];
 } corners;
 
-/* First and last pixel whose centre lies in [low, high] (1/256 pixel), inside first…last. */
-static i32x first_pixel(const i32x a[3], int first)
+/* First and last pixel with a sample in [low, high] (1/256 pixel), inside first…last. */
+static i32x first_pixel(const i32x a[3], int first, int round)
 {
-    return i_max((i_min(i_min(a[0], a[1]), a[2]) + 127) >> 8, i_set(first));
+    return i_max((i_min(i_min(a[0], a[1]), a[2]) + round) >> 8, i_set(first));
 }
-static i32x last_pixel(const i32x a[3], int last)
+static i32x last_pixel(const i32x a[3], int last, int round)
 {
-    return i_min((i_max(i_max(a[0], a[1]), a[2]) - 128) >> 8, i_set(last));
+    return i_min((i_max(i_max(a[0], a[1]), a[2]) - round) >> 8, i_set(last));
 }
 
 static maskx is_small(i32x a, i32x b) { return (i_max(a, b) - i_min(a, b)) < SMALL; }
@@ -76,13 +76,13 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
     i32x area = (c.x[1] - c.x[0]) * (c.y[2] - c.y[0]) - (c.x[2] - c.x[0]) * (c.y[1] - c.y[0]);
     maskx clockwise = area > 0; /* y points down */
     maskx front = draw->front_clockwise ? clockwise : ~clockwise;
-    i32x x0 = first_pixel(c.x, limits->x0), x1 = last_pixel(c.x, limits->x1 - 1);
-    i32x y0 = first_pixel(c.y, limits->y0), y1 = last_pixel(c.y, limits->y1 - 1);
+    i32x x0 = first_pixel(c.x, limits->x0, pass->low_round), x1 = last_pixel(c.x, limits->x1 - 1, pass->high_round);
+    i32x y0 = first_pixel(c.y, limits->y0, pass->low_round), y1 = last_pixel(c.y, limits->y1 - 1, pass->high_round);
     maskx kept = simple & (area != 0) & (x0 <= x1) & (y0 <= y1);
     if (draw->cull != AMB_CULL_NONE)
         kept &= draw->cull == AMB_CULL_BACK ? front : ~front;
     maskx tiny = (x1 - x0 <= 1) & (y1 - y0 <= 1);
-    if (m_any(kept & tiny))
+    if (pass->samples == 1 && m_any(kept & tiny))
         kept &= ~tiny | touches_a_centre(&c, x0, y0, x1, y1, i_sel(clockwise, i_set(1), i_set(-1)));
     uint32_t word[6][AMB_LANES];
     i32x primitive = i_load((const int32_t *)(const void *)(scratch->corner[3] + first));

@@ -1,5 +1,6 @@
 /* The tile stage: all chunks of a batch, in order, over one tile, from loading its pixels to storing them. */
 #include "raster/lines.h"
+#include "raster/multisample.h"
 
 #define raster_tile_play WIDE(raster_tile)
 void raster_tile_play(const amb_pass *pass, int tile, raster_scratch *scratch, int thread);
@@ -26,7 +27,7 @@ static void transfer(const raster_tile *tile, const amb_image *image, int channe
         float *row = amb_image_row(image, channel, tile->y0 + y) + tile->x0;
         float *lanes = block_at(tile, 0, y / AMB_BLOCK_H) + plane * AMB_LANES;
         int rows = tile->bottom - y < AMB_BLOCK_H ? tile->bottom - y : AMB_BLOCK_H;
-        for (int x = 0; x < tile->right; x += AMB_BLOCK_W, lanes += (size_t)tile->pass->planes * AMB_LANES) {
+        for (int x = 0; x < tile->right; x += AMB_BLOCK_W, lanes += (size_t)block_planes(tile) * AMB_LANES) {
             float block[AMB_LANES] = {0};
             if (to_image)
                 f_store(block, rows_of(f_load(lanes)));
@@ -41,11 +42,45 @@ static void transfer(const raster_tile *tile, const amb_image *image, int channe
     }
 }
 
+static size_t blocks_of(const raster_tile *tile)
+{
+    return (size_t)tile->blocks_x * (size_t)(tile->pass->tile_size / AMB_BLOCK_H);
+}
+
 static void fill(const raster_tile *tile, int plane, float value)
 {
-    const size_t blocks = (size_t)tile->blocks_x * (size_t)(tile->pass->tile_size / AMB_BLOCK_H);
+    const size_t blocks = blocks_of(tile);
     for (size_t i = 0; i < blocks; i++)
-        f_store(tile->data + (i * (size_t)tile->pass->planes + (size_t)plane) * AMB_LANES, f_set(value));
+        f_store(tile->data + (i * (size_t)block_planes(tile) + (size_t)plane) * AMB_LANES, f_set(value));
+}
+
+/* Gives every sample what sample 0 holds. */
+static void spread_samples(const raster_tile *tile)
+{
+    const size_t blocks = blocks_of(tile), floats = (size_t)tile->pass->planes * AMB_LANES;
+    for (size_t i = 0; i < blocks; i++)
+        for (int k = 1; k < tile->pass->samples; k++) {
+            float *block = tile->data + i * floats * (size_t)tile->pass->samples;
+            memcpy(block + (size_t)k * floats, block, floats * sizeof *block);
+        }
+}
+
+/* Averages the samples' colours into sample 0: neighbours in pairs, then pairs of pairs. */
+static void resolve_samples(const raster_tile *tile)
+{
+    const size_t blocks = blocks_of(tile), floats = (size_t)tile->pass->planes * AMB_LANES;
+    const int samples = tile->pass->samples, first = 1 + tile->pass->stencil_plane;
+    for (size_t i = 0; i < blocks; i++)
+        for (int plane = first; plane < tile->pass->planes; plane++) {
+            float *at = tile->data + i * floats * (size_t)samples + (size_t)plane * AMB_LANES;
+            f32x sum[RASTER_MAX_SAMPLES];
+            for (int k = 0; k < samples; k++)
+                sum[k] = f_load(at + (size_t)k * floats);
+            for (int n = samples; n > 1; n /= 2)
+                for (int k = 0; k < n / 2; k++)
+                    sum[k] = sum[2 * k] + sum[2 * k + 1];
+            f_store(at, sum[0] * (1.0f / (float)samples));
+        }
 }
 
 static void load_tile(const raster_tile *tile, bool from_images)
@@ -126,6 +161,10 @@ static inline void play_group(const raster_tile *tile, raster_shading *s, raster
             play_point(tile, s, queue, g.low[n], g.high[n]);
             continue;
         }
+        if (tile->pass->samples > 1) {
+            play_multisample(tile, s, g.low[n], g.high[n]);
+            continue;
+        }
         if (!(g.small >> n & 1u)) {
             play_large(tile, s, queue, g.low[n], g.high[n]);
             continue;
@@ -169,14 +208,20 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     raster_tile tile = {.pass = pass, .data = scratch->tile, .thread = thread, .stats = &scratch->stats};
     raster_shading shading;
     raster_queue queue = {.p = {f_set(1.0f)}};
-    tile.spare = scratch->tile + (size_t)pass->tile_size * (size_t)pass->tile_size * (size_t)pass->planes;
+    tile.spare = scratch->tile + raster_tile_floats(pass);
     tile.packing = scratch->packing;
     tile.x0 = number % pass->tiles_x * pass->tile_size;
     tile.y0 = number / pass->tiles_x * pass->tile_size;
     tile.blocks_x = pass->tile_size / AMB_BLOCK_W;
     tile.right = pass->width - tile.x0 < pass->tile_size ? pass->width - tile.x0 : pass->tile_size;
     tile.bottom = pass->height - tile.y0 < pass->tile_size ? pass->height - tile.y0 : pass->tile_size;
-    load_tile(&tile, pass->target.keep || pass->tile_started[number]);
+    const size_t bytes = raster_tile_floats(pass) * sizeof(float);
+    if (pass->samples > 1 && pass->tile_store[number]) {
+        memcpy(tile.data, pass->tile_store[number], bytes);
+    } else {
+        load_tile(&tile, pass->target.keep || pass->tile_started[number]);
+        spread_samples(&tile);
+    }
     for (size_t i = 0; i < pass->chunk_count;) {
         size_t screens = 0;
         while (i + screens < pass->chunk_count && pass->chunk[i + screens].count == 0)
@@ -190,5 +235,16 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
         i += screens > 0 ? screens : 1;
     }
     flush_queue(&tile, &queue);
+    if (pass->samples > 1 && !pass->last_batch) { /* the samples must last until it */
+        if (!pass->tile_store[number])
+            pass->tile_store[number] = malloc(bytes);
+        if (pass->tile_store[number])
+            memcpy(pass->tile_store[number], tile.data, bytes);
+        else
+            scratch->failed = true;
+        return;
+    }
+    if (pass->samples > 1)
+        resolve_samples(&tile);
     store_tile(&tile);
 }

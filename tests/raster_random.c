@@ -27,13 +27,15 @@ typedef struct random_pass {
     int channels[2];
     amb_target target;
     random_draw draw[MAX_DRAWS];
-    /* the truth's images: [target][channel][pixel], depth, stencil */
+    int samples;
+    /* the truth's images: [target][channel][sample of a pixel], depth, stencil */
     float *color[2][4], *depth;
     int *stencil;
     /* while a primitive is drawn */
     const random_draw *now;
     int primitive;
     bool front;
+    unsigned covered; /* samples of the pixel being drawn */
 } random_pass;
 
 /* ---- from bytes to a pass -----------------------------------------------------------------------------------------
@@ -85,6 +87,7 @@ static void random_output(random_pass *p, amb_draw *s)
         q->color_op = (amb_blend_op)number(p, 5), q->alpha_op = (amb_blend_op)number(p, 5);
         s->channels_off[i] = number(p, 4) == 0 ? (uint8_t)number(p, 16) : 0;
     }
+    s->alpha_to_coverage = number(p, 6) == 0;
     s->blend_constant = (v4){0.5f, 0.25f, -1.0f, 0.75f};
     s->targets_off = number(p, 5) == 0 ? (uint32_t)number(p, 4) : 0;
     s->depth_compare = (amb_compare)number(p, 9);
@@ -143,7 +146,9 @@ static bool random_target(random_pass *p)
     p->targets = 1 + number(p, 2);
     p->tile_size = tiles[number(p, 4)];
     bool made = true;
-    size_t pixels = (size_t)p->width * (size_t)p->height;
+    p->samples = number(p, 2) ? 1 << number(p, 4) : 1;
+    p->target.samples = p->samples;
+    size_t pixels = (size_t)p->width * (size_t)p->height * (size_t)p->samples;
     for (int i = 0; i < p->targets && made; i++) {
         p->channels[i] = 1 + number(p, 4);
         p->target.clear_color[i] = (v4){0.5f, -0.25f, (float)number(p, 9) / 4.0f, 0.125f};
@@ -302,16 +307,9 @@ static float depth_truth(const random_pass *p)
     return clamp01(z + bias);
 }
 
-static void truth_pixel(void *user, int x, int y)
+static void truth_sample(random_pass *p, int at)
 {
-    random_pass *p = user;
     const amb_draw *draw = &p->now->state;
-    const amb_rect *r = &draw->scissor;
-    int at = y * p->width + x;
-    if ((r->width || r->height) && (x < r->x || y < r->y || x >= r->x + r->width || y >= r->y + r->height))
-        return;
-    if (draw->fragment && ((x + 2 * y + p->primitive) & 3) < p->now->uniforms.holes)
-        return;
     float depth = depth_truth(p);
     amb_compare mode = draw->depth_compare == AMB_COMPARE_DEFAULT ? AMB_LESS : draw->depth_compare;
     bool near_enough = !p->target.depth || compare_truth(mode, (double)depth, (double)p->depth[at]);
@@ -345,6 +343,47 @@ static void truth_pixel(void *user, int x, int y)
     }
 }
 
+/* All covered samples of a pixel. */
+static void truth_samples(random_pass *p, int x, int y)
+{
+    const amb_draw *draw = &p->now->state;
+    const amb_rect *r = &draw->scissor;
+    if ((r->width || r->height) && (x < r->x || y < r->y || x >= r->x + r->width || y >= r->y + r->height))
+        return;
+    if (draw->fragment && ((x + 2 * y + p->primitive) & 3) < p->now->uniforms.holes)
+        return;
+    if (draw->alpha_to_coverage && draw->fragment) {
+        int kept = (int)floor((double)(clamp01(RASTER_TEST_CODE(p->primitive, 3)) * (float)p->samples + 0.5f));
+        p->covered &= (1u << kept) - 1u;
+    }
+    for (int i = 0; i < p->samples; i++)
+        if (p->covered >> i & 1u)
+            truth_sample(p, (y * p->width + x) * p->samples + i);
+}
+
+static void truth_pixel(void *user, int x, int y)
+{
+    random_pass *p = user;
+    p->covered = ~0u;
+    truth_samples(p, x, y);
+}
+
+static void truth_fill_samples(random_pass *p, const truth_triangle *t)
+{
+    static const int8_t positions[4][16] = {
+        {0, 0}, {4, 4, -4, -4}, {-2, -6, 6, -2, -6, 2, 2, 6}, {1, -3, -1, 3, 5, 1, -3, -5, -5, 5, -7, -1, 3, 7, 7, -7}};
+    int level = p->samples == 1 ? 0 : p->samples == 2 ? 1 : p->samples == 4 ? 2 : 3;
+    for (int y = 0; y < p->height && truth_area(t) != 0; y++)
+        for (int x = 0; x < p->width; x++) {
+            p->covered = 0;
+            for (int i = 0; i < p->samples; i++)
+                p->covered |=
+                    (unsigned)truth_covers_sample(t, x, y, positions[level][2 * i], positions[level][2 * i + 1]) << i;
+            if (p->covered)
+                truth_samples(p, x, y);
+        }
+}
+
 static bool culled(const random_pass *p)
 {
     amb_cull cull = p->now->state.cull;
@@ -372,7 +411,7 @@ static void truth_triangle_of(random_pass *p, const float clip[3][4])
     for (int i = 0; i < pieces; i++) {
         p->front = (truth_area(&piece[i]) > 0) == draw->front_clockwise;
         if (!culled(p))
-            truth_fill(&piece[i], p->width, p->height, truth_pixel, p);
+            truth_fill_samples(p, &piece[i]);
     }
 }
 
@@ -430,13 +469,25 @@ static void truth_draw_all(random_pass *p, const random_draw *d)
 
 static void clear_truth(random_pass *p)
 {
-    for (int i = 0; i < p->width * p->height; i++) {
+    for (int i = 0; i < p->width * p->height * p->samples; i++) {
         for (int t = 0; t < p->targets; t++)
             for (int c = 0; c < p->channels[t]; c++)
                 p->color[t][c][i] = (&p->target.clear_color[t].x)[c];
         p->depth[i] = p->target.clear_depth;
         p->stencil[i] = p->target.clear_stencil;
     }
+}
+
+/* The average of a pixel's samples, added in pairs. */
+static float resolved(const random_pass *p, int target, int channel, int pixel)
+{
+    float v[8];
+    for (int i = 0; i < p->samples; i++)
+        v[i] = p->color[target][channel][pixel * p->samples + i];
+    for (int n = p->samples; n > 1; n /= 2)
+        for (int i = 0; i < n / 2; i++)
+            v[i] = v[2 * i] + v[2 * i + 1];
+    return v[0] / (float)p->samples;
 }
 
 static long compare_images(const random_pass *p, char what[64])
@@ -448,13 +499,13 @@ static long compare_images(const random_pass *p, char what[64])
             const char *name = NULL;
             for (int t = 0; t < p->targets; t++)
                 for (int c = 0; c < p->channels[t]; c++) {
-                    float a = amb_image_row(p->target.color[t], c, y)[x], b = p->color[t][c][at];
+                    float a = amb_image_row(p->target.color[t], c, y)[x], b = resolved(p, t, c, at);
                     if (!(a == b || (isnan(a) && isnan(b))))
                         name = "colour";
                 }
-            if (p->target.depth && amb_image_row(p->target.depth, 0, y)[x] != p->depth[at])
+            if (p->target.depth && amb_image_row(p->target.depth, 0, y)[x] != p->depth[at * p->samples])
                 name = "depth";
-            if (p->target.stencil && amb_image_row(p->target.stencil, 0, y)[x] != (float)p->stencil[at])
+            if (p->target.stencil && amb_image_row(p->target.stencil, 0, y)[x] != (float)p->stencil[at * p->samples])
                 name = "stencil";
             if (name && differences++ == 0)
                 snprintf(what, 64, "%s at (%d, %d) of %d×%d", name, x, y, p->width, p->height);

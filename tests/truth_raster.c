@@ -45,10 +45,14 @@ static int clip_polygon(double in[][4], int count, double out[][4], int plane, i
     return made;
 }
 
+#define NOWHERE INT64_MIN
+
 static int64_t to_grid(float ndc, float scale, float offset)
 {
     float scaled = ndc * scale;
     float window = scaled + offset;
+    if (!(fabs((double)window) <= 524288.0))
+        return NOWHERE;
     return (int64_t)rint((double)window * 256.0); /* ties to even */
 }
 
@@ -73,6 +77,8 @@ int truth_clip(const float clip[3][4], int width, int height, int clip_depth, tr
             return 0;
         x[i] = to_grid(c[0] / c[3], 0.5f * (float)width, 0.5f * (float)width);
         y[i] = to_grid(c[1] / c[3], -0.5f * (float)height, 0.5f * (float)height);
+        if (x[i] == NOWHERE || y[i] == NOWHERE)
+            return 0;
     }
     for (int i = 0; i + 2 < count; i++) {
         int corner[3] = {0, i + 1, i + 2};
@@ -89,9 +95,11 @@ int64_t truth_area(const truth_triangle *t)
     return (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
 }
 
-int truth_covers(const truth_triangle *t, int x, int y)
+int truth_covers(const truth_triangle *t, int x, int y) { return truth_covers_sample(t, x, y, 0, 0); }
+
+int truth_covers_sample(const truth_triangle *t, int x, int y, int dx, int dy)
 {
-    int64_t px = 256 * (int64_t)x + 128, py = 256 * (int64_t)y + 128;
+    int64_t px = 256 * (int64_t)x + 128 + 16 * dx, py = 256 * (int64_t)y + 128 + 16 * dy;
     int64_t turn = truth_area(t) > 0 ? 1 : -1;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -205,6 +213,8 @@ void truth_draw_line(const float from[4], const float to[4], int width, int heig
             return;
         x[i] = to_grid(c[0] / c[3], 0.5f * (float)width, 0.5f * (float)width);
         y[i] = to_grid(c[1] / c[3], -0.5f * (float)height, 0.5f * (float)height);
+        if (x[i] == NOWHERE || y[i] == NOWHERE)
+            return;
     }
     for (int py = 0; py < height; py++)
         for (int px = 0; px < width; px++) {

@@ -17,6 +17,8 @@ int truth_clip(const float clip[3][4], int width, int height, int clip_depth, tr
 int64_t truth_area(const truth_triangle *t);
 /* Does the triangle own the centre of pixel (x, y)? */
 int truth_covers(const truth_triangle *t, int x, int y);
+/* The same for a sample dx, dy sixteenths of a pixel from the centre. */
+int truth_covers_sample(const truth_triangle *t, int x, int y, int dx, int dy);
 /* Calls pixel() for every pixel of the window that a snapped triangle owns. */
 void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user);
 /* Both of them, whatever way the pieces face. */

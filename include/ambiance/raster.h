@@ -150,6 +150,7 @@ typedef struct amb_draw {
     amb_blend_equation equation[AMB_MAX_TARGETS]; /* where blend is AMB_BLEND_EQUATION */
     v4 blend_constant;
     amb_stencil stencil;          /* needs a stencil image */
+    bool alpha_to_coverage;       /* of n samples, only the first ⌊n·a + ½⌋ are written, a = alpha of color[0] in 0…1 */
 } amb_draw;
 
 typedef struct amb_target {
@@ -160,6 +161,10 @@ typedef struct amb_target {
     float clear_depth;                 /* used as it is: give 1 for the usual */
     uint8_t clear_stencil;
     bool keep;                         /* true: start from the images' contents instead of the clear values */
+    /* 0 or 1; 2, 4 or 8: multisampling at D3D's standard positions. Triangles cover samples, lines and points whole
+     * pixels; shaders run once a pixel, at its centre; depth, stencil and blending work on samples. At the end colours
+     * are averaged, depth and stencil are those of sample 0. */
+    int samples;
 } amb_target;
 
 /* Counts of a pass, the same at any thread count. "triangles" are the primitives, lines and points too. */

@@ -1,0 +1,115 @@
+/* Which samples of a tile a triangle covers: exactly the fill rule of coverage.h, at every sample's own position. Part
+ * of tile_wide.c. */
+#ifndef AMBIANCE_RASTER_MULTISAMPLE_H
+#define AMBIANCE_RASTER_MULTISAMPLE_H
+
+#include "raster/coverage.h"
+
+/* D3D's standard positions, 1/16 pixel from the centre. */
+static const int8_t *sample_positions(int samples)
+{
+    static const int8_t two[] = {4, 4, -4, -4};
+    static const int8_t four[] = {-2, -6, 6, -2, -6, 2, 2, 6};
+    static const int8_t eight[] = {1, -3, -1, 3, 5, 1, -3, -5, -5, 5, -7, -1, 3, 7, 7, -7};
+    return samples == 2 ? two : samples == 4 ? four : eight;
+}
+
+typedef struct sample_edges {
+    raster_edge e[RASTER_MAX_SAMPLES + 1][3]; /* of each sample; last the pixel's centre */
+} sample_edges;
+
+/* One edge function, its origin moved by (dx, dy) sixteenths of a pixel. value: at the box's first pixel's centre. */
+static raster_edge moved_edge(int64_t value, int32_t a, int32_t b, int dx, int dy)
+{
+    value += (int64_t)a * (dx * (RASTER_SUBPIXEL / 16)) + (int64_t)b * (dy * (RASTER_SUBPIXEL / 16));
+    bool top_left = a > 0 || (a == 0 && b > 0);
+    int32_t fraction = (int32_t)(value & 255);
+    int32_t excluded = !top_left && fraction == 0;
+    return (raster_edge){(value >> 8) - excluded, a, b, (float)excluded + (float)fraction * (1.0f / 256.0f)};
+}
+
+/* Values of an edge's function over a block, as floats, and where they are inside. */
+static inline maskx edge_over_block(const raster_edge *e, int x, int y, bool fits, f32x *weight)
+{
+    if (fits) {
+        i32x k = ((int32_t)e->c + e->a * x + e->b * y) + (i_block_x() * e->a + i_block_y() * e->b);
+        *weight = i_to_f(k) + e->bias;
+        return k >= 0;
+    }
+    float value[AMB_LANES];
+    uint32_t inside = 0;
+    int64_t k = e->c + (int64_t)e->a * x + (int64_t)e->b * y;
+    for (int lane = 0; lane < AMB_LANES; lane++) {
+        int64_t v = k + (int64_t)e->a * i_lane(i_block_x(), lane) + (int64_t)e->b * i_lane(i_block_y(), lane);
+        inside |= (uint32_t)(v >= 0) << lane;
+        value[lane] = (float)((double)v + (double)e->bias);
+    }
+    *weight = f_load(value);
+    return m_from_bits(inside);
+}
+
+static void cover_samples(const raster_tile *tile, raster_shading *s, const sample_edges *edges, raster_box box, int bx,
+                          int by, bool fits)
+{
+    const int samples = tile->pass->samples;
+    int x = (bx - box.x0) * AMB_BLOCK_W, y = (by - box.y0) * AMB_BLOCK_H;
+    maskx cover[RASTER_MAX_SAMPLES], any = m_set(false);
+    f32x weight[3], depth[RASTER_MAX_SAMPLES];
+    if (!s->prepared)
+        prepare_shading(s);
+    for (int i = 0; i < samples; i++) {
+        cover[i] = m_set(true);
+        for (int k = 0; k < 3; k++)
+            cover[i] &= edge_over_block(&edges->e[i][k], x, y, fits, &weight[k]);
+        depth[i] = depth_at(s, weight);
+        any |= cover[i];
+    }
+    if (!m_any(any))
+        return;
+    for (int k = 0; k < 3; k++)
+        edge_over_block(&edges->e[samples][k], x, y, fits, &weight[k]);
+    fragment_samples(tile, s, bx, by, cover, depth, weight);
+}
+
+static void play_multisample(const raster_tile *tile, raster_shading *s, uint32_t low, uint32_t high)
+{
+    const raster_chunk *chunk = s->chunk;
+    const int samples = tile->pass->samples;
+    const int8_t *position = sample_positions(samples);
+    raster_box box = box_in_tile(tile, low, high);
+    if (box.x0 > box.x1)
+        return;
+    int32_t x[3], y[3];
+    for (int i = 0; i < 3; i++)
+        x[i] = chunk->x[s->number[i]], y[i] = chunk->y[s->number[i]];
+    int64_t px = ((int64_t)tile->x0 + box.x0 * AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
+    int64_t py = ((int64_t)tile->y0 + box.y0 * AMB_BLOCK_H) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
+    sample_edges edges;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        int32_t a = y[j] - y[k], b = x[k] - x[j];
+        int64_t value = a * (px - x[j]) + b * (py - y[j]);
+        for (int n = 0; n < samples; n++)
+            edges.e[n][i] = moved_edge(value, a, b, position[2 * n], position[2 * n + 1]);
+        edges.e[samples][i] = moved_edge(value, a, b, 0, 0);
+    }
+    int64_t area = (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
+    s->inverse_area = 256.0f / (float)area;
+    bool fits = fits_32_bits(x, y, edges.e[samples]);
+    for (int by = box.y0; by <= box.y1; by++)
+        for (int bx = box.x0; bx <= box.x1; bx++) {
+            bool outside = false;
+            for (int i = 0; i < 3; i++) { /* from the block's corner pixels, half a pixel farther out */
+                const raster_edge *e = &edges.e[samples][i];
+                int64_t wide = magnitude(e->a) * (AMB_BLOCK_W + 1) + magnitude(e->b) * (AMB_BLOCK_H + 1);
+                int64_t middle = 2 * (e->c + (int64_t)e->a * ((bx - box.x0) * AMB_BLOCK_W) +
+                                      (int64_t)e->b * ((by - box.y0) * AMB_BLOCK_H)) +
+                                 (int64_t)e->a * (AMB_BLOCK_W - 1) + (int64_t)e->b * (AMB_BLOCK_H - 1);
+                outside |= middle + wide + 2 < 0;
+            }
+            if (!outside)
+                cover_samples(tile, s, &edges, box, bx, by, fits);
+        }
+}
+
+#endif
