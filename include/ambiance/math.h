@@ -244,8 +244,8 @@ AMB_INLINE void f_sincos(f32x a, f32x *sine, f32x *cosine)
     f32x r2 = r * r;
     f32x s = amb_sin_core_(r, r_low, r2), c = amb_cos_core_(r, r_low, r2);
     maskx swap = (quadrant & 1) != 0;
-    i32x sine_sign = ((quadrant & 2) << 30) ^ (f_bits(a) & INT32_MIN);
-    i32x cosine_sign = ((quadrant + 1) & 2) << 30;
+    i32x sine_sign = u_as_i(i_as_u(quadrant & 2) << 30) ^ (f_bits(a) & INT32_MIN);
+    i32x cosine_sign = u_as_i(i_as_u((quadrant + 1) & 2) << 30);
     *sine = f_from_bits(f_bits(f_sel(swap, c, s)) ^ sine_sign);
     *cosine = f_from_bits(f_bits(f_sel(swap, s, c)) ^ cosine_sign);
 }
