@@ -71,24 +71,8 @@ static void bloom_span(const amb_post_job *job, const void *state, const amb_pos
 {
     const bloom_params *p = job->params;
     const bloom_state *s = state;
-    const glow *g = &s->glow;
-    if (!g->reduce)
-        return;
-    float cells[3][GLOW_SPAN_CELLS];
-    amb_glow_rows(g, span, p->intensity, cells);
-    glow_lanes lanes[2] = {glow_lanes_at(g, 0), glow_lanes_at(g, AMB_LANES)};
-    for (int block = 0; block < span->count; block += GLOW_BLOCK) {
-        if (!s->blurred && glow_is_dark(g, cells, block))
-            continue; /* most of most pictures: neither read nor written */
-        int end = block + GLOW_BLOCK < span->count ? block + GLOW_BLOCK : span->count;
-        for (int c = 0; c < 3; c++)
-            for (int i = block; i < end; i += AMB_LANES) {
-                f32x add = glow_at(g, cells[c], i, lanes[i / AMB_LANES & 1]);
-                f_store(span->rgb[c] + i, f_load(span->rgb[c] + i) + add);
-                if (s->blurred)
-                    f_store(amb_image_row(s->blurred, c, span->y) + span->x + i, add);
-            }
-    }
+    if (s->glow.reduce)
+        glow_add(&s->glow, span, p->intensity, s->blurred);
 }
 
 const amb_post_pass WIDE(amb_post_bloom) = {

@@ -2,14 +2,14 @@
  * up-sample, add.
  *
  * Its shader sums taps -4…3 with weights[|i|] of {0.4, 0.2, 0.2, 0.1, 0.1}: they reach one pixel further to the left
- * than to the right and sum to 1.5, so both directions together amplify by 2.25. `weights=seed` keeps that;
+ * than to the right and sum to 1.5, so both directions together amplify by 2.25. `weights=coursework` keeps that;
  * `weights=normalized` divides by 1.5. */
 #include "post/glow.h"
 
 #include <stddef.h>
 
 enum { VIEW_SCENE, VIEW_BRIGHTPASS };
-enum { WEIGHTS_SEED, WEIGHTS_NORMALIZED };
+enum { WEIGHTS_COURSEWORK, WEIGHTS_NORMALIZED };
 
 typedef struct brightpass_params {
     float cutoff, glare;
@@ -17,7 +17,7 @@ typedef struct brightpass_params {
 } brightpass_params;
 
 static const char *const views[] = {"scene", "brightpass", NULL};
-static const char *const weightings[] = {"seed", "normalized", NULL};
+static const char *const weightings[] = {"coursework", "normalized", NULL};
 
 /* clang-format off */
 static const amb_param brightpass_table[] = {
@@ -27,7 +27,7 @@ static const amb_param brightpass_table[] = {
      "strength of what passes"},
     {"reduce", AMB_PARAM_CHOICE, "", 0.0f, 0.0f, {0.0f}, glow_reductions, offsetof(brightpass_params, reduce),
      "size the blur works at"},
-    {"weights", AMB_PARAM_CHOICE, "", 0.0f, 0.0f, {WEIGHTS_SEED}, weightings, offsetof(brightpass_params, weights),
+    {"weights", AMB_PARAM_CHOICE, "", 0.0f, 0.0f, {WEIGHTS_COURSEWORK}, weightings, offsetof(brightpass_params, weights),
      "the coursework's taps, which sum to 1.5, or the same divided by that"},
     {"view", AMB_PARAM_CHOICE, "", 0.0f, 0.0f, {VIEW_SCENE}, views, offsetof(brightpass_params, view),
      "the picture with its bloom, or the bright pass alone"},
@@ -41,33 +41,37 @@ typedef struct brightpass_state {
 
 static amb_status brightpass_begin(const amb_post_job *job, void *state, bool *collects, amb_error *error)
 {
-    static const float seed[8] = {0.1f, 0.1f, 0.2f, 0.2f, 0.4f, 0.2f, 0.2f, 0.1f};
+    static const float taps[8] = {0.1f, 0.1f, 0.2f, 0.2f, 0.4f, 0.2f, 0.2f, 0.1f};
     const brightpass_params *p = job->params;
     brightpass_state *s = state;
     amb_status status = AMB_OK;
+    if (p->view == VIEW_BRIGHTPASS)
+        return AMB_OK;
+    *collects = true;
     if (job->intermediates) {
         status = amb_post_layer(job, "brightpass.bright", 3, &s->bright, error);
         if (status == AMB_OK)
             status = amb_post_layer(job, "brightpass.blurred", 3, &s->blurred, error);
     }
-    *collects = p->view == VIEW_SCENE || job->intermediates;
-    if (status == AMB_OK && *collects)
+    if (status == AMB_OK)
         status = amb_glow_begin(job, 2 << p->reduce, &s->glow, error);
     for (int k = 0; k < 8; k++)
-        s->glow.tap[k] = p->weights == WEIGHTS_SEED ? seed[k] : seed[k] / 1.5f;
+        s->glow.tap[k] = p->weights == WEIGHTS_COURSEWORK ? taps[k] : taps[k] / 1.5f;
     s->glow.taps = 8;
     s->glow.first = -4;
     s->glow.rounds = 1;
     return status;
 }
 
-/* The seed's bright pass, saturated to 0…1. NaN passes as 0; light beyond GLOW_LIMIT counts as that. */
+/* The coursework's bright pass, saturated to 0…1. NaN passes as 0; light beyond GLOW_LIMIT counts as that. */
 AMB_INLINE v3x bright(const void *user, v3x rgb)
 {
     const brightpass_params *p = user;
     f32x zero = f_set(0.0f), limit = f_set(GLOW_LIMIT);
     rgb = (v3x){f_clamp(rgb.x, zero, limit), f_clamp(rgb.y, zero, limit), f_clamp(rgb.z, zero, limit)};
     f32x luminance = rgb.x * 0.2125f + rgb.y * 0.7154f + rgb.z * 0.0721f;
+    if (!m_any(luminance > p->cutoff))
+        return (v3x){zero, zero, zero}; /* what the division would give */
     f32x passed = f_max(luminance - p->cutoff, zero) * p->glare;
     f32x factor = passed / (luminance + 0.00001f);
     return (v3x){f_saturate(rgb.x * factor), f_saturate(rgb.y * factor), f_saturate(rgb.z * factor)};
@@ -98,20 +102,8 @@ static void brightpass_span(const amb_post_job *job, const void *state, const am
 {
     const brightpass_params *p = job->params;
     const brightpass_state *s = state;
-    const glow *g = &s->glow;
-    float cells[3][GLOW_SPAN_CELLS];
-    if (g->reduce)
-        amb_glow_rows(g, span, 1.0f, cells);
-    for (int c = 0; c < 3 && g->reduce; c++) {
-        glow_lanes lanes[2] = {glow_lanes_at(g, 0), glow_lanes_at(g, AMB_LANES)};
-        for (int i = 0; i < span->count; i += AMB_LANES) {
-            f32x add = glow_at(g, cells[c], i, lanes[i / AMB_LANES & 1]);
-            if (s->blurred)
-                f_store(amb_image_row(s->blurred, c, span->y) + span->x + i, add);
-            if (p->view == VIEW_SCENE)
-                f_store(span->rgb[c] + i, f_load(span->rgb[c] + i) + add);
-        }
-    }
+    if (s->glow.reduce)
+        glow_add(&s->glow, span, 1.0f, s->blurred);
     if (p->view == VIEW_BRIGHTPASS)
         show_bright(p, span);
 }

@@ -126,4 +126,24 @@ AMB_INLINE f32x glow_at(const glow *g, const float *cells, int pixel, glow_lanes
     return f_lerp(left, right, lanes.t);
 }
 
+/* Adds the glow (already times its intensity) to the span. `keep` (or NULL) gets what is added. */
+AMB_INLINE void glow_add(const glow *g, const amb_post_span *span, float scale, const amb_image *keep)
+{
+    float cells[3][GLOW_SPAN_CELLS];
+    amb_glow_rows(g, span, scale, cells);
+    glow_lanes lanes[2] = {glow_lanes_at(g, 0), glow_lanes_at(g, AMB_LANES)};
+    for (int block = 0; block < span->count; block += GLOW_BLOCK) {
+        if (!keep && glow_is_dark(g, cells, block))
+            continue; /* most of most pictures: neither read nor written */
+        int end = block + GLOW_BLOCK < span->count ? block + GLOW_BLOCK : span->count;
+        for (int c = 0; c < 3; c++)
+            for (int i = block; i < end; i += AMB_LANES) {
+                f32x add = glow_at(g, cells[c], i, lanes[i / AMB_LANES & 1]);
+                f_store(span->rgb[c] + i, f_load(span->rgb[c] + i) + add);
+                if (keep)
+                    f_store(amb_image_row(keep, c, span->y) + span->x + i, add);
+            }
+    }
+}
+
 #endif

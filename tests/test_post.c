@@ -188,7 +188,8 @@ static void noise_repeats_by_frame_index(void **state)
     }
 }
 
-/* ---- the fade of seed figure 55 ---------------------------------------------------------------------------------- */
+/* ---- the fade to black of the Ambiance report, figure 55
+ * ----------------------------------------------------------------------- */
 
 /* A sun of light (9, 7, 2.5) is white on the screen. Fading to black in HDR keeps the ratio of its channels, so its
  * yellow comes back; fading what the screen shows would give grey. */

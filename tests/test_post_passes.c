@@ -90,7 +90,7 @@ static void bloom_is_true(void **state)
     }
 }
 
-static void seed_weights(truth_image *t) { truth_brightpass(t, (double)0.4f, 2.0, 2, 0, 0); }
+static void coursework_weights(truth_image *t) { truth_brightpass(t, (double)0.4f, 2.0, 2, 0, 0); }
 static void normalized_weights(truth_image *t) { truth_brightpass(t, (double)0.4f, 0.5, 4, 1, 0); }
 static void view(truth_image *t) { truth_brightpass(t, 0.25, 1.0, 2, 0, 1); }
 
@@ -98,7 +98,7 @@ static void brightpass_is_true(void **state)
 {
     (void)state;
     static const compared c[] = {
-        {"brightpass:cutoff=0.4,glare=2", 5e-7, seed_weights},
+        {"brightpass:cutoff=0.4,glare=2", 5e-7, coursework_weights},
         {"brightpass:cutoff=0.4,glare=0.5,reduce=quarter,weights=normalized", 5e-7, normalized_weights},
         {"brightpass:cutoff=0.25,view=brightpass", 3e-7, view},
     };
