@@ -31,8 +31,8 @@ amb_status amb_read_texture(const char *path, bool srgb, amb_texture **out, amb_
 amb_status amb_read_mesh(const char *path, amb_mesh **out, amb_error *error);
 
 /* Whole-file output used by every writer: begin gives a temporary file (".NAME.PID-N.ambiance-tmp", beside the target),
- * commit syncs and renames, abort removes. Links are followed, permissions kept; a device is written in place. A process
- * with a file-size limit should ignore SIGXFSZ to get the error instead of the signal. */
+ * commit syncs and renames, abort removes. Links are followed, permissions kept; a device is written in place. A
+ * process with a file-size limit should ignore SIGXFSZ to get the error instead of the signal. */
 typedef struct amb_output amb_output;
 amb_status amb_output_begin(const char *path, amb_output **out, amb_error *error);
 amb_status amb_output_write(amb_output *output, const void *data, size_t bytes, amb_error *error);
