@@ -441,8 +441,65 @@ static void bad_draws_are_refused(void **state)
     d.indices = (const uint32_t[3]){0}, refuse(pass, &d, AMB_ERROR_ARGUMENT, "vertex_count"), d = good;
     d.count = UINT32_MAX, refuse(pass, &d, AMB_ERROR_LIMIT, "count"), d = good;
     d.count = 3000000, d.instances = 3000, refuse(pass, &d, AMB_ERROR_LIMIT, "instances"), d = good;
+    d.topology = (amb_topology)6, refuse(pass, &d, AMB_ERROR_ARGUMENT, "topology is 6"), d = good;
+    d.point_size = -1, refuse(pass, &d, AMB_ERROR_ARGUMENT, "point_size is -1"), d = good;
+    d.point_size = NAN, refuse(pass, &d, AMB_ERROR_ARGUMENT, "point_size"), d = good;
+    d.scissor.width = -3, refuse(pass, &d, AMB_ERROR_ARGUMENT, "-3×0"), d = good;
+    d.depth_bias_slope = INFINITY, refuse(pass, &d, AMB_ERROR_ARGUMENT, "bias"), d = good;
+    d.stencil.on = true, refuse(pass, &d, AMB_ERROR_ARGUMENT, "no stencil image"), d = good;
+    d.blend[0] = AMB_BLEND_EQUATION;
+    d.equation[0].color_op = (amb_blend_op)5, refuse(pass, &d, AMB_ERROR_ARGUMENT, "operation is 5");
+    d.equation[0].alpha_target = (amb_factor)17, refuse(pass, &d, AMB_ERROR_ARGUMENT, "factor is 17"), d = good;
+    amb_pass_close(&pass);
+    amb_image *second = image_of(4, 4, 1), *stencil = image_of(4, 4, 1);
+    target.color[1] = second, target.stencil = stencil;
+    assert_int_equal(amb_pass_begin(context, &target, &pass, NULL), AMB_OK);
+    d.blend[0] = AMB_BLEND_EQUATION, d.equation[0].color_source = AMB_FACTOR_SECOND;
+    refuse(pass, &d, AMB_ERROR_ARGUMENT, "one colour image"), d = good;
+    d.stencil.on = true, d.stencil.back.compare = (amb_compare)-1;
+    refuse(pass, &d, AMB_ERROR_ARGUMENT, "stencil compare is -1"), d = good;
+    d.stencil.on = true, d.stencil.front.depth_fail = (amb_stencil_op)8;
+    refuse(pass, &d, AMB_ERROR_ARGUMENT, "stencil operation is 8"), d = good;
     amb_pass_close(&pass);
     amb_image_close(&image);
+    amb_image_close(&second);
+    amb_image_close(&stencil);
+    amb_context_close(&context);
+}
+
+/* A plane with known slopes: the bias is the larger one times depth_bias_slope, within float error. */
+static void slope_bias_follows_the_plane(void **state)
+{
+    (void)state;
+    amb_context *context = context_of(AMB_ISA_AUTO, 1);
+    const raster_test_shaders *shaders = raster_test_shaders_of(amb_context_isa(context));
+    amb_image *z = image_of(32, 16, 1);
+    for (int i = 0; i < 200; i++) {
+        raster_test_vertex vertex[3];
+        const double dx = uniform(-0.01, 0.01), dy = uniform(-0.01, 0.01), slope = uniform(-3, 3);
+        double limit = i % 3 == 0 ? uniform(-0.01, 0.01) : 0.0, steep = fmax(fabs(dx), fabs(dy));
+        cover_all(vertex, 0.0f, (v4){0, 0, 0, 0}); /* corners at window (0, 16), (64, 16) and (0, -16) */
+        vertex[0].clip.z = (float)(0.5 + dy * 8), vertex[1].clip.z = (float)(0.5 + dx * 64 + dy * 8);
+        vertex[2].clip.z = (float)(0.5 - dy * 24);
+        raster_test_uniforms u = {.vertex = vertex};
+        amb_target target = {.depth = z, .clear_depth = 1.0f};
+        amb_pass *pass = NULL;
+        assert_int_equal(amb_pass_begin(context, &target, &pass, NULL), AMB_OK);
+        amb_draw d = draw_of(shaders, &u, 3);
+        d.fragment = NULL, d.depth_compare = AMB_ALWAYS, d.depth_clamp = true;
+        d.depth_bias_slope = (float)slope, d.depth_bias_clamp = (float)limit;
+        assert_int_equal(amb_pass_draw(pass, &d, NULL), AMB_OK);
+        assert_int_equal(amb_pass_finish(&pass, NULL, NULL), AMB_OK);
+        double bias = slope * steep;
+        bias = limit > 0 ? fmin(bias, limit) : limit < 0 ? fmax(bias, limit) : bias;
+        for (int y = 0; y < 16; y++)
+            for (int x = 0; x < 32; x++) {
+                double truth = 0.5 + dx * (x + 0.5) + dy * (y + 0.5 - 8) + bias;
+                truth = fmin(fmax(truth, 0), 1);
+                assert_true(fabs((double)pixel(z, 0, x, y) - truth) < 1e-6);
+            }
+    }
+    amb_image_close(&z);
     amb_context_close(&context);
 }
 
@@ -469,6 +526,9 @@ static void bad_targets_are_refused(void **state)
     refuse_target(context, &(amb_target){.color = {c}, .depth = a}, "4 channels");
     refuse_target(context, &(amb_target){.color = {a, c, a}}, "same image");
     refuse_target(context, &(amb_target){.color = {a, c}, .depth = c}, "also the depth");
+    refuse_target(context, &(amb_target){.color = {a}, .stencil = a}, "4 channels");
+    refuse_target(context, &(amb_target){.color = {a}, .depth = c, .stencil = c}, "also the stencil");
+    refuse_target(context, &(amb_target){.color = {a}, .samples = 3}, "samples is 3");
     amb_error error;
     amb_pass *none = NULL;
     assert_int_equal(amb_pass_begin(context, &(amb_target){.color = {a}}, NULL, &error), AMB_ERROR_ARGUMENT);
@@ -494,6 +554,7 @@ int main(void)
         cmocka_unit_test(bad_vertices_take_only_their_triangle),
         cmocka_unit_test(bad_draws_are_refused),
         cmocka_unit_test(bad_targets_are_refused),
+        cmocka_unit_test(slope_bias_follows_the_plane),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
