@@ -203,7 +203,7 @@ amb_status post_difference(void *state, double *rmse, amb_error *error)
     amb_image *flipped = NULL;
     amb_status status = rgba ? amb_image_create(width, height, 3, &flipped, error)
                              : amb_fail(error, AMB_ERROR_MEMORY, "no memory to compare with the peer");
-    if (!status) {
+    if (!status && flipped) {
         glBindFramebuffer(GL_FRAMEBUFFER, s->result->frame);
         glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, rgba);
         for (int c = 0; c < 3; c++) /* the peer's rows count from the top, as ours */

@@ -77,6 +77,13 @@ void post_apply(amb_frame *frame, const char *text, amb_isa isa, int threads, lo
     amb_context_close(&context);
 }
 
+static uint32_t bits_of(float a)
+{
+    uint32_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits;
+}
+
 void post_assert_same(const amb_frame *a, const amb_frame *b, const char *what)
 {
     assert_int_equal(a->layer_count, b->layer_count);
@@ -87,7 +94,7 @@ void post_assert_same(const amb_frame *a, const amb_frame *b, const char *what)
             for (int y = 0; y < p->height; y++) {
                 const float *s = amb_image_row(p, c, y), *t = amb_image_row(q, c, y);
                 for (int x = 0; x < p->width; x++)
-                    if (memcmp(&s[x], &t[x], sizeof *s) != 0 && !(isnan(s[x]) && isnan(t[x])))
+                    if (bits_of(s[x]) != bits_of(t[x]) && !(isnan(s[x]) && isnan(t[x])))
                         fail_msg("%s: layer %s channel %d at (%d, %d) of %dx%d: %.9g and %.9g", what, a->layer[l].name,
                                  c, x, y, p->width, p->height, (double)s[x], (double)t[x]);
             }

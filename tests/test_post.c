@@ -264,8 +264,8 @@ static void errors_are_one_clear_line(void **state)
     check_error(context, "bloom;;display", AMB_ERROR_ARGUMENT, "pass 2 has no name");
     check_error(context, ";", AMB_ERROR_ARGUMENT, "pass 1 has no name");
     char long_chain[512] = "";
-    for (int i = 0; i < AMB_MAX_CHAIN + 1; i++)
-        strcat(long_chain, "bloom;");
+    for (size_t i = 0; i < AMB_MAX_CHAIN + 1; i++)
+        memcpy(long_chain + 6 * i, "bloom;", 7);
     check_error(context, long_chain, AMB_ERROR_LIMIT, "at most 32 passes");
     amb_context_close(&context);
 }

@@ -291,7 +291,7 @@ void truth_grain(truth_image *image, double amount, int size, int colored, long 
             double light = clamp(0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2], 0.0, 65504.0);
             for (uint32_t c = 0; c < 3; c++) {
                 uint32_t h = lattice(x / size, y / size, key_of(frame_index, colored ? c : 0));
-                p[c] += amount * sqrt(light) * ((double)(h / 65536) - (double)(h % 65536)) / 65536.0;
+                p[c] += amount * sqrt(light) * ((double)(h >> 16) - (double)(h & 65535)) / 65536.0;
             }
         }
 }
@@ -304,7 +304,7 @@ static double value_noise(double x, double y, uint32_t key)
     double u = quintic(x - i), v = quintic(y - j), corner[2][2];
     for (int b = 0; b < 2; b++)
         for (int a = 0; a < 2; a++)
-            corner[b][a] = (lattice(i + a, j + b, key) / 256) / 16777216.0;
+            corner[b][a] = (lattice(i + a, j + b, key) >> 8) / 16777216.0;
     double n = (1 - v) * ((1 - u) * corner[0][0] + u * corner[0][1]) + v * ((1 - u) * corner[1][0] + u * corner[1][1]);
     return 2 * n - 1;
 }
