@@ -61,31 +61,45 @@ AMB_INLINE f32x julia_log(f32x a)
     return (exponent + (f + 0.2786f * f * (1.0f - f))) * (0.5f * AMB_LN2);
 }
 
-/* z ← z² + c in (x, y, w²); xx = x², imaginary = y² + w², square = |z|², before and after. */
-#define JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square)                                         \
-    y = (x + x) * y + (set)->along, ww = ww * (4.0f * xx), x = (xx - imaginary) + (set)->c.x, xx = x * x, \
-    imaginary = y * y + ww, square = xx + imaginary
+/* A point of an orbit. Each step is written for the shortest chain of dependent operations, which is what bounds the
+ * speed: c joins before the sum that x waits for. */
+typedef struct julia_point {
+    f32x x, y, xx, ww; /* xx = x², ww = w² */
+    f32x rest;         /* y² + w² - Re c: what x² must lose */
+    f32x square;       /* |z|² */
+} julia_point;
+
+AMB_INLINE julia_point julia_point_at(f32x x, f32x y, f32x ww, float c)
+{
+    f32x xx = x * x, yy = y * y;
+    return (julia_point){x, y, xx, ww, yy + (ww - c), (xx + yy) + ww};
+}
+
+/* z ← z² + c. */
+AMB_INLINE julia_point julia_step(julia_point z, const julia_set *set)
+{
+    return julia_point_at(z.xx - z.rest, z.x * (z.y + z.y) + set->along, z.xx * (4.0f * z.ww), set->c.x);
+}
 
 /* Lower bound of the distance; 0 for points that stay bounded. `user` is a julia_set. */
 AMB_INLINE f32x julia_distance(v3x p, const void *user)
 {
     const julia_set *set = user;
-    f32x x = p.x, y = p.y * set->axis.x + p.z * set->axis.y;
-    f32x ww = f_max((p.y * p.y + p.z * p.z) - y * y, f_set(0.0f)); /* w² */
-    f32x xx = x * x, imaginary = y * y + ww, square = xx + imaginary;
-    f32x last = square, slope = f_set(1.0f), scale = f_set(1.0f); /* |z|², |z'|², 2⁻ⁿ; kept from the escape on */
+    f32x y = p.y * set->axis.x + p.z * set->axis.y;
+    julia_point z = julia_point_at(p.x, y, f_max((p.y * p.y + p.z * p.z) - y * y, f_set(0.0f)), set->c.x);
+    f32x last = z.square, slope = f_set(1.0f), scale = f_set(1.0f); /* |z|², |z'|², 2⁻ⁿ; kept from the escape on */
     for (int i = 0; i < set->iterations; i += 2) {
         /* Two at a time. A lane that has escaped runs on to infinity and NaN, which never compare as bounded again. */
-        maskx bounded = square <= JULIA_ESCAPE;
+        maskx bounded = z.square <= JULIA_ESCAPE;
         if (!m_any(bounded))
             break;
-        f32x steeper = 16.0f * square;
-        JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square);
-        steeper = steeper * square;
-        JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square);
+        f32x steeper = 16.0f * z.square;
+        z = julia_step(z, set);
+        steeper = steeper * z.square;
+        z = julia_step(z, set);
         slope = f_sel(bounded, slope * steeper, slope);
         scale = f_sel(bounded, scale * 0.25f, scale);
-        last = f_sel(bounded, square, last);
+        last = f_sel(bounded, z.square, last);
     }
     /* The root beside the logarithm, not after it: a march waits for this chain at every step. */
     f32x root = f_sqrt(last / slope);
