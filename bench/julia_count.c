@@ -21,13 +21,11 @@ typedef struct counter {
 /* Turns of the orbit before it escapes, in steps of `step`. */
 static int turns(const julia_set *set, v3x p, int step)
 {
-    float x = p.x, y = p.y * set->axis.x + p.z * set->axis.y;
-    float ww = f_max((p.y * p.y + p.z * p.z) - y * y, 0.0f), xx = x * x, imaginary = y * y + ww,
-          square = xx + imaginary;
+    julia_orbit orbit = julia_orbit_from(p, set);
     int i = 0;
-    while (i < set->iterations && square <= JULIA_ESCAPE) {
+    while (i < set->iterations && julia_bounded(&orbit)) {
         for (int k = 0; k < step; k++)
-            JULIA_SQUARE_PLUS_C(set, x, y, ww, xx, imaginary, square);
+            orbit.z = julia_step(orbit.z, set);
         i += step;
     }
     return i / step;

@@ -81,31 +81,64 @@ AMB_INLINE julia_point julia_step(julia_point z, const julia_set *set)
     return julia_point_at(z.xx - z.rest, z.x * (z.y + z.y) + set->along, z.xx * (4.0f * z.ww), set->c.x);
 }
 
+/* An orbit on its way out. */
+typedef struct julia_orbit {
+    julia_point z;
+    f32x last, slope, scale; /* |z|², |z'|², 2⁻ⁿ; kept from the escape on */
+} julia_orbit;
+
+AMB_INLINE julia_orbit julia_orbit_from(v3x p, const julia_set *set)
+{
+    f32x y = p.y * set->axis.x + p.z * set->axis.y, one = f_set(1.0f);
+    julia_point z = julia_point_at(p.x, y, f_max((p.y * p.y + p.z * p.z) - y * y, f_set(0.0f)), set->c.x);
+    return (julia_orbit){z, z.square, one, one};
+}
+
+AMB_INLINE maskx julia_bounded(const julia_orbit *o) { return o->z.square <= JULIA_ESCAPE; }
+
+/* Two steps. A lane that has escaped runs on to infinity and NaN, which never compare as bounded again. */
+AMB_INLINE void julia_orbit_on(julia_orbit *o, const julia_set *set)
+{
+    maskx bounded = julia_bounded(o);
+    f32x steeper = 16.0f * o->z.square;
+    o->z = julia_step(o->z, set);
+    steeper = steeper * o->z.square;
+    o->z = julia_step(o->z, set);
+    o->slope = f_sel(bounded, o->slope * steeper, o->slope);
+    o->scale = f_sel(bounded, o->scale * 0.25f, o->scale);
+    o->last = f_sel(bounded, o->z.square, o->last);
+}
+
+AMB_INLINE f32x julia_orbit_distance(const julia_orbit *o)
+{
+    /* The root beside the logarithm, not after it: a march waits for this chain at every step. */
+    f32x root = f_sqrt(o->last / o->slope);
+    f32x log_z = julia_log(o->last), g = log_z * o->scale, far = 1.0f + g * (1.0f + g * (1.0f / 3.0f));
+    f32x d = root * ((0.5f * log_z) / far);
+    return f_sel(o->last <= JULIA_ESCAPE, f_set(0.0f), d);
+}
+
 /* Lower bound of the distance; 0 for points that stay bounded. `user` is a julia_set. */
 AMB_INLINE f32x julia_distance(v3x p, const void *user)
 {
     const julia_set *set = user;
-    f32x y = p.y * set->axis.x + p.z * set->axis.y;
-    julia_point z = julia_point_at(p.x, y, f_max((p.y * p.y + p.z * p.z) - y * y, f_set(0.0f)), set->c.x);
-    f32x last = z.square, slope = f_set(1.0f), scale = f_set(1.0f); /* |z|², |z'|², 2⁻ⁿ; kept from the escape on */
-    for (int i = 0; i < set->iterations; i += 2) {
-        /* Two at a time. A lane that has escaped runs on to infinity and NaN, which never compare as bounded again. */
-        maskx bounded = z.square <= JULIA_ESCAPE;
-        if (!m_any(bounded))
-            break;
-        f32x steeper = 16.0f * z.square;
-        z = julia_step(z, set);
-        steeper = steeper * z.square;
-        z = julia_step(z, set);
-        slope = f_sel(bounded, slope * steeper, slope);
-        scale = f_sel(bounded, scale * 0.25f, scale);
-        last = f_sel(bounded, z.square, last);
+    julia_orbit o = julia_orbit_from(p, set);
+    for (int i = 0; i < set->iterations && m_any(julia_bounded(&o)); i += 2)
+        julia_orbit_on(&o, set);
+    return julia_orbit_distance(&o);
+}
+
+/* Two points a lane, each as above. */
+AMB_INLINE void julia_distance_pair(const v3x p[2], f32x distance[2], const void *user)
+{
+    const julia_set *set = user;
+    julia_orbit o = julia_orbit_from(p[0], set), q = julia_orbit_from(p[1], set);
+    for (int i = 0; i < set->iterations && m_any(julia_bounded(&o) | julia_bounded(&q)); i += 2) {
+        julia_orbit_on(&o, set);
+        julia_orbit_on(&q, set);
     }
-    /* The root beside the logarithm, not after it: a march waits for this chain at every step. */
-    f32x root = f_sqrt(last / slope);
-    f32x log_z = julia_log(last), g = log_z * scale, far = 1.0f + g * (1.0f + g * (1.0f / 3.0f));
-    f32x d = root * ((0.5f * log_z) / far);
-    return f_sel(last <= JULIA_ESCAPE, f_set(0.0f), d);
+    distance[0] = julia_orbit_distance(&o);
+    distance[1] = julia_orbit_distance(&q);
 }
 
 typedef struct julia_surface {

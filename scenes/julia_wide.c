@@ -172,7 +172,8 @@ typedef struct julia_uniforms {
     amb_march_limits limits;
     const amb_rays *ball;
     const amb_texture *environment, *irradiance;
-    const float *start; /* of each tile */
+    const float *start; /* of each tile: safe for all its rays */
+    const float *hit;   /* of each pixel, packet by packet: t, or -1 */
     int tiles_across;
     int target[OUT_COUNT]; /* attachment of each AOV; -1: not wanted */
 } julia_uniforms;
@@ -191,6 +192,7 @@ typedef struct julia_tiles {
     const julia_uniforms *uniforms;
     const struct julia_tiles *coarse; /* NULL: start at the bounding ball */
     float *start;
+    float *hit;             /* fine tiles only: t of each pixel */
     int size, across, down; /* pixels a tile; tiles */
 } julia_tiles;
 
@@ -218,6 +220,58 @@ static void start_row(void *user, int row, int thread)
                                       f_set(last), radius, u->limits.least, 64, m_set(true)));
         for (int k = 0; k < AMB_LANES && i + k < tiles->across; k++)
             tiles->start[row * tiles->across + i + k] = lanes[k];
+    }
+}
+
+/* ---- the march ----------------------------------------------------------------------------------------------------
+ */
+
+/* Where rays are inside the bounding ball, not before `start`. */
+AMB_INLINE maskx ball_interval(const julia_uniforms *u, v3x direction, float start, maskx live, f32x *t0, f32x *t1)
+{
+    v3 eye = u->camera.position;
+    float far = v3_length(eye), unit = 1.0f / u->set.radius;
+    *t0 = *t1 = f_set(0.0f);
+    if (!(start <= far + u->set.radius))
+        return m_set(false);
+    /* In units of the ball, so that one tree serves every c; t stays in world units. */
+    amb_rayx ray = {v3x_splat(v3_scale(eye, unit)), v3x_scale(direction, f_set(unit)), f_set(0.0f), f_set(FLT_MAX)};
+    amb_hitx ball;
+    amb_rays_closest(u->ball, &ray, live, &ball);
+    *t0 = f_max(far < u->set.radius ? f_set(0.0f) : ball.t, f_set(start));
+    *t1 = ball.t_exit;
+    return ball.hit;
+}
+
+/* A tile's pixels as packets of AMB_LANES: fragment blocks, left to right, then down. */
+#define PACKETS (JULIA_TILE * JULIA_TILE / AMB_LANES)
+#define PACKETS_ACROSS (JULIA_TILE / AMB_BLOCK_W)
+
+/* Marches the pixel centres of one row of tiles, two packets at a time; keeps t, or -1 for no hit. */
+static void march_row(void *user, int row, int thread)
+{
+    (void)thread;
+    const julia_tiles *tiles = user;
+    const julia_uniforms *u = tiles->uniforms;
+    int count = tiles->across * PACKETS;
+    for (int first = 0; first < count; first += 2) {
+        v3x direction[2];
+        f32x t0[2], t1[2];
+        maskx live[2];
+        amb_marched m[2];
+        for (int k = 0; k < 2; k++) {
+            int packet = first + k < count ? first + k : count - 1, tile = packet / PACKETS, part = packet % PACKETS;
+            int x = tile * JULIA_TILE + part % PACKETS_ACROSS * AMB_BLOCK_W;
+            int y = row * JULIA_TILE + part / PACKETS_ACROSS * AMB_BLOCK_H;
+            direction[k] = eye_ray(&u->camera, i_to_f(i_block_x() + x) + 0.5f, i_to_f(i_block_y() + y) + 0.5f);
+            float start = tiles->start[row * tiles->across + tile];
+            live[k] = ball_interval(u, direction[k], start, m_set(first + k < count), &t0[k], &t1[k]);
+        }
+        amb_march_pair(julia_distance_pair, &u->set, v3x_splat(u->camera.position), direction, t0, t1, &u->limits, live,
+                       m);
+        float *out = tiles->hit + ((size_t)row * (size_t)count + (size_t)first) * AMB_LANES;
+        for (int k = 0; k < 2 && first + k < count; k++)
+            f_store(out + k * AMB_LANES, f_sel(m[k].hit, m[k].t, f_set(-1.0f)));
     }
 }
 
@@ -317,37 +371,22 @@ AMB_INLINE v3x chosen_component(const julia_light *r, int component)
     }
 }
 
-/* The ray through window position (x, y); `start` is safe for it. */
-static julia_light trace(const julia_uniforms *u, f32x x, f32x y, float start, maskx live)
+/* What is seen along a ray that hits the set at t, or the environment. */
+static julia_light shade_pixel(const julia_uniforms *u, v3x direction, f32x t, maskx hit, maskx live)
 {
-    v3x direction = eye_ray(&u->camera, x, y);
-    v3 eye = u->camera.position;
-    float far = v3_length(eye), unit = 1.0f / u->set.radius;
-    amb_marched m = {.hit = m_set(false), .t = f_set(0.0f)};
-    if (start <= far + u->set.radius) {
-        /* In units of the ball, so that one tree serves every c; t stays in world units. */
-        amb_rayx ray = {v3x_splat(v3_scale(eye, unit)), v3x_scale(direction, f_set(unit)), f_set(0.0f), f_set(FLT_MAX)};
-        amb_hitx ball;
-        amb_rays_closest(u->ball, &ray, live, &ball);
-        if (m_any(ball.hit)) {
-            f32x enter = far < u->set.radius ? f_set(0.0f) : ball.t;
-            m = amb_march(julia_distance, &u->set, v3x_splat(eye), direction, f_max(enter, f_set(start)), ball.t_exit,
-                          &u->limits, ball.hit);
-        }
-    }
-    julia_light r = {.hit = m.hit, .depth = f_set(1.0f)};
-    if (m_any(m.hit)) {
-        r = shade_surface(u, direction, m.t, m.hit);
+    julia_light r = {.hit = hit, .depth = f_set(1.0f)};
+    if (m_any(hit)) {
+        r = shade_surface(u, direction, t, hit);
         v3x view = m4_point_x(u->camera.world_to_view, r.position);
-        r.depth = f_sel(m.hit, amb_camera_depth_x(&u->camera, -view.z), f_set(1.0f));
+        r.depth = f_sel(hit, amb_camera_depth_x(&u->camera, -view.z), f_set(1.0f));
         r.color = chosen_component(&r, u->params.component);
     }
-    if (!m_all(m.hit | ~live)) {
+    if (!m_all(hit | ~live)) {
         v3x behind = {f_set(0.0f), f_set(0.0f), f_set(0.0f)};
         if (u->params.component == COMPONENT_ALL)
             behind = v3x_scale(v4x_xyz(amb_sample_cube_lod(u->environment, &sampler, direction, f_set(u->params.blur))),
                                f_set(u->params.background));
-        r.color = v3x_sel(m.hit, r.color, behind);
+        r.color = v3x_sel(hit, r.color, behind);
     }
     return r;
 }
@@ -374,20 +413,32 @@ static void write_targets(const julia_uniforms *u, const julia_light *r, amb_fs_
     out->depth = r->depth;
 }
 
+/* One more ray of a pixel, off its centre. */
+static v3x sample_color(const julia_uniforms *u, f32x x, f32x y, float start, maskx live)
+{
+    v3x direction = eye_ray(&u->camera, x, y);
+    f32x t0, t1;
+    maskx inside = ball_interval(u, direction, start, live, &t0, &t1);
+    amb_marched m =
+        amb_march(julia_distance, &u->set, v3x_splat(u->camera.position), direction, t0, t1, &u->limits, inside);
+    return shade_pixel(u, direction, m.t, m.hit, live).color;
+}
+
 static void julia_fragment(const amb_fs_in *in, amb_fs_out *out)
 {
     const julia_uniforms *u = in->uniforms;
-    int tile = (int)f_lane(in->y, 0) / JULIA_TILE * u->tiles_across + (int)f_lane(in->x, 0) / JULIA_TILE;
-    float start = u->start[tile];
-    julia_light r = trace(u, in->x, in->y, start, in->live);
+    int x = (int)f_lane(in->x, 0), y = (int)f_lane(in->y, 0), tile = y / JULIA_TILE * u->tiles_across + x / JULIA_TILE;
+    int part = y % JULIA_TILE / AMB_BLOCK_H * PACKETS_ACROSS + x % JULIA_TILE / AMB_BLOCK_W;
+    f32x t = f_load(u->hit + (size_t)(tile * PACKETS + part) * AMB_LANES);
+    julia_light r = shade_pixel(u, eye_ray(&u->camera, in->x, in->y), t, in->live & (t >= 0.0f), in->live);
     write_targets(u, &r, out);
     v3x sum = r.color;
     for (int i = 1; i < u->params.samples; i++) {
         /* The R2 sequence (M. Roberts, 2018) around the centre, inside the pixel. */
-        float x = (float)i * 0.7548776662f + 0.5f, y = (float)i * 0.5698402910f + 0.5f;
-        x -= (float)(int)x;
-        y -= (float)(int)y;
-        sum = v3x_add(sum, trace(u, in->x + (x - 0.5f), in->y + (y - 0.5f), start, in->live).color);
+        float dx = (float)i * 0.7548776662f + 0.5f, dy = (float)i * 0.5698402910f + 0.5f;
+        dx -= (float)(int)dx;
+        dy -= (float)(int)dy;
+        sum = v3x_add(sum, sample_color(u, in->x + (dx - 0.5f), in->y + (dy - 0.5f), u->start[tile], in->live));
     }
     out->color[0] = v4x_of3(v3x_scale(sum, f_set(1.0f / (float)u->params.samples)), f_set(1.0f));
 }
@@ -422,33 +473,30 @@ static amb_target choose_targets(julia_uniforms *u, const amb_frame *frame)
     return target;
 }
 
+static julia_tiles make_tiles(const julia_uniforms *u, const julia_tiles *coarse, int size, const amb_scene_job *job)
+{
+    return (julia_tiles){u, coarse, NULL, NULL, size, (job->width + size - 1) / size, (job->height + size - 1) / size};
+}
+
 static amb_status julia_frame(const void *state, const amb_scene_job *job, amb_error *error)
 {
     julia_uniforms u = {.params = *(const julia_params *)job->params};
     amb_pass *pass = NULL;
     fill_uniforms(&u, state, job);
     amb_target target = choose_targets(&u, job->frame);
-    julia_tiles coarse = {&u,
-                          NULL,
-                          NULL,
-                          JULIA_COARSE_TILE,
-                          (job->width + JULIA_COARSE_TILE - 1) / JULIA_COARSE_TILE,
-                          (job->height + JULIA_COARSE_TILE - 1) / JULIA_COARSE_TILE};
-    julia_tiles fine = {&u,
-                        &coarse,
-                        NULL,
-                        JULIA_TILE,
-                        (job->width + JULIA_TILE - 1) / JULIA_TILE,
-                        (job->height + JULIA_TILE - 1) / JULIA_TILE};
-    size_t coarse_count = (size_t)coarse.across * (size_t)coarse.down;
-    float *start = malloc((coarse_count + (size_t)fine.across * (size_t)fine.down) * sizeof *start);
-    if (start == NULL)
+    julia_tiles coarse = make_tiles(&u, NULL, JULIA_COARSE_TILE, job), fine = make_tiles(&u, &coarse, JULIA_TILE, job);
+    size_t coarse_count = (size_t)coarse.across * (size_t)coarse.down,
+           fine_count = (size_t)fine.across * (size_t)fine.down;
+    float *memory = malloc((coarse_count + fine_count * (1 + JULIA_TILE * JULIA_TILE)) * sizeof *memory);
+    if (memory == NULL)
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene julia");
-    coarse.start = start;
-    u.start = fine.start = start + coarse_count;
+    coarse.start = memory;
+    u.start = fine.start = coarse.start + coarse_count;
+    u.hit = fine.hit = fine.start + fine_count;
     u.tiles_across = fine.across;
     amb_parallel_for(job->context, coarse.down, start_row, &coarse);
     amb_parallel_for(job->context, fine.down, start_row, &fine);
+    amb_parallel_for(job->context, fine.down, march_row, &fine);
     amb_status status = amb_pass_begin(job->context, &target, &pass, error);
     if (status != AMB_OK)
         goto done;
@@ -463,7 +511,7 @@ static amb_status julia_frame(const void *state, const amb_scene_job *job, amb_e
         status = amb_pass_finish(&pass, NULL, error);
 done:
     amb_pass_close(&pass);
-    free(start);
+    free(memory);
     return status;
 }
 
