@@ -44,11 +44,14 @@ int32_t amb_reduce_quadrant(float a, float *r, float *r_low);
 
 #define AMB_ROUND_MAGIC 12582912.0f /* 1.5·2²³: adding it rounds |a| < 2²² to an integer, left in the low bits */
 
+/* a·2ᵇʸ modulo 2³²: shifts of negative numbers are only defined unsigned. */
+AMB_INLINE i32x amb_shift_(i32x a, int by) { return u_as_i(i_as_u(a) << by); }
+
 /* p·2ⁿ for p in [0.5, 2] and |n| ≤ 254: two exact steps and one rounding, so denormal results are right. */
 AMB_INLINE f32x amb_scale_(f32x p, i32x n)
 {
     i32x half = n >> 1;
-    return p * f_from_bits((half + 127) << 23) * f_from_bits((n - half + 127) << 23);
+    return p * f_from_bits(amb_shift_(half + 127, 23)) * f_from_bits(amb_shift_(n - half + 127, 23));
 }
 
 /* eʳ for |r| ≤ 0.35: 1 + r + r²·q(r), q minimax with relative error 2⁻²⁸. */
@@ -86,7 +89,7 @@ AMB_INLINE f32x amb_log_split_(f32x a, f32x *e)
     i32x bits = f_bits(f_sel(denormal, a * 8388608.0f, a)) & 0x7fffffff;
     i32x n = (bits - 0x3f3504f3) >> 23; /* 0x3f3504f3 is √½ */
     *e = i_to_f(n) - f_sel(denormal, f_set(23.0f), f_set(0.0f));
-    return f_from_bits(bits - (n << 23));
+    return f_from_bits(bits - amb_shift_(n, 23));
 }
 
 /* log(1+f) - f + f²/2 for f in [√½-1, √2-1]. */
@@ -244,8 +247,8 @@ AMB_INLINE void f_sincos(f32x a, f32x *sine, f32x *cosine)
     f32x r2 = r * r;
     f32x s = amb_sin_core_(r, r_low, r2), c = amb_cos_core_(r, r_low, r2);
     maskx swap = (quadrant & 1) != 0;
-    i32x sine_sign = u_as_i(i_as_u(quadrant & 2) << 30) ^ (f_bits(a) & INT32_MIN);
-    i32x cosine_sign = u_as_i(i_as_u((quadrant + 1) & 2) << 30);
+    i32x sine_sign = amb_shift_(quadrant & 2, 30) ^ (f_bits(a) & INT32_MIN);
+    i32x cosine_sign = amb_shift_((quadrant + 1) & 2, 30);
     *sine = f_from_bits(f_bits(f_sel(swap, c, s)) ^ sine_sign);
     *cosine = f_from_bits(f_bits(f_sel(swap, s, c)) ^ cosine_sign);
 }
@@ -379,7 +382,7 @@ AMB_INLINE f32x f_cbrt(f32x a)
     f32x t = f_from_bits(f_to_i(i_to_f(f_bits(x)) * 0.333333333f) + 709921077);
     f32x t3 = t * t * t;
     t = t * ((t3 + 2.0f * x) / (2.0f * t3 + x));
-    t = f_from_bits((f_bits(t) + 0x8000) & ~0xffff);
+    t = f_from_bits(u_as_i((i_as_u(f_bits(t)) + 0x8000u) & 0xffff0000u));
     t3 = t * t * t;
     t = t + t * ((x - t3) / (2.0f * t3 + x));
     t = t * f_sel(tiny, f_set(0.00390625f), f_sel(huge, f_set(256.0f), f_set(1.0f)));
