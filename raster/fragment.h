@@ -88,10 +88,9 @@ static inline void run_shader(const raster_tile *tile, const amb_draw *draw, con
 {
     out->depth = in->depth;
     out->live = in->live;
-    for (int i = 0; i < tile->pass->target_count; i++)
+    out->color[0] = out->color[1] = (v4x){0}; /* also a second source of blending, or an alpha that means coverage */
+    for (int i = 2; i < tile->pass->target_count; i++)
         out->color[i] = (v4x){0};
-    for (int i = tile->pass->target_count; i < 2; i++)
-        out->color[i] = (v4x){0}; /* may be a second source of blending, or an alpha that means coverage */
     draw->fragment(in, out);
     out->live &= in->live;
     if (draw->writes_depth)

@@ -49,7 +49,7 @@ typedef struct raster_pixels {
     float *quad[RASTER_QUADS];
 } raster_pixels;
 
-static inline f32x load_quads(const float *const quad[RASTER_QUADS], size_t offset)
+AMB_INLINE f32x load_quads(const float *const quad[RASTER_QUADS], size_t offset)
 {
 #if AMB_LANES == 16
     __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(quad[0] + offset));
@@ -64,14 +64,14 @@ static inline f32x load_quads(const float *const quad[RASTER_QUADS], size_t offs
 #endif
 }
 
-static inline f32x load_plane(const raster_pixels *at, int plane, bool packed)
+AMB_INLINE f32x load_plane(const raster_pixels *at, int plane, bool packed)
 {
     size_t offset = (size_t)plane * AMB_LANES;
     return packed ? load_quads((const float *const *)at->quad, offset) : f_load(at->quad[0] + offset);
 }
 
 /* Writes the live lanes; the others keep what they hold. */
-static inline void store_plane(const raster_pixels *at, int plane, f32x value, maskx live, bool packed)
+AMB_INLINE void store_plane(const raster_pixels *at, int plane, f32x value, maskx live, bool packed)
 {
     size_t offset = (size_t)plane * AMB_LANES;
     float *first = at->quad[0] + offset;
@@ -223,8 +223,8 @@ static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw
 /* ---- blending --------------------------------------------------------------------------------------------------- */
 
 /* One attachment, with one of the plain modes. */
-static inline void store_target(const raster_pixels *at, int plane, int channels, amb_blend mode, const f32x source[4],
-                                maskx live, bool packed)
+AMB_INLINE void store_target(const raster_pixels *at, int plane, int channels, amb_blend mode, const f32x source[4],
+                             maskx live, bool packed)
 {
     f32x rest = 1.0f - source[3];
     for (int c = 0; c < channels; c++, plane++) {
@@ -330,7 +330,7 @@ static __attribute__((noinline)) void store_general(const raster_pixels *at, int
     }
 }
 
-static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
+AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
                                 const amb_fs_out *out, maskx live, bool packed)
 {
     const amb_pass *pass = tile->pass;
@@ -346,6 +346,30 @@ static inline void store_colors(const raster_tile *tile, const amb_draw *draw, c
         else
             store_target(at, plane, channels, draw->blend[i], source, live, packed);
     }
+}
+
+/* Two forms, so that each knows how its pixels lie. */
+static __attribute__((noinline)) void store_block_colors(const raster_tile *tile, const amb_draw *draw,
+                                                         const raster_pixels *at, int base, const amb_fs_out *out,
+                                                         maskx live)
+{
+    store_colors_of(tile, draw, at, base, out, live, false);
+}
+
+static __attribute__((noinline)) void store_packed_colors(const raster_tile *tile, const amb_draw *draw,
+                                                          const raster_pixels *at, int base, const amb_fs_out *out,
+                                                          maskx live)
+{
+    store_colors_of(tile, draw, at, base, out, live, true);
+}
+
+static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
+                                const amb_fs_out *out, maskx live, bool packed)
+{
+    if (packed)
+        store_packed_colors(tile, draw, at, base, out, live);
+    else
+        store_block_colors(tile, draw, at, base, out, live);
 }
 
 #endif

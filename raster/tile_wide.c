@@ -19,6 +19,31 @@ static inline f32x rows_of(f32x a)
 #endif
 }
 
+#if AMB_LANES == 16 && AMB_X86
+#define RASTER_STREAMS 1
+/* One channel of four rows of pixels to the image, whole cache lines past the caches: nobody reads them again soon. */
+static void stream_rows(const raster_tile *tile, const float *lanes, float *row, size_t stride)
+{
+    const size_t step = (size_t)block_planes(tile) * AMB_LANES;
+    for (int x = 0; x < tile->right; x += 16, lanes += 4 * step) {
+        __m512 a = (__m512)rows_of(f_load(lanes)), b = (__m512)rows_of(f_load(lanes + step));
+        __m512 c = (__m512)rows_of(f_load(lanes + 2 * step)), d = (__m512)rows_of(f_load(lanes + 3 * step));
+        __m512 ab = _mm512_shuffle_f32x4(a, b, 0x44), cd = _mm512_shuffle_f32x4(c, d, 0x44);
+        __m512 ab2 = _mm512_shuffle_f32x4(a, b, 0xee), cd2 = _mm512_shuffle_f32x4(c, d, 0xee);
+        _mm512_stream_ps(row + x, _mm512_shuffle_f32x4(ab, cd, 0x88));
+        _mm512_stream_ps(row + stride + x, _mm512_shuffle_f32x4(ab, cd, 0xdd));
+        _mm512_stream_ps(row + 2 * stride + x, _mm512_shuffle_f32x4(ab2, cd2, 0x88));
+        _mm512_stream_ps(row + 3 * stride + x, _mm512_shuffle_f32x4(ab2, cd2, 0xdd));
+    }
+}
+#else
+#define RASTER_STREAMS 0
+static void stream_rows(const raster_tile *tile, const float *lanes, float *row, size_t stride)
+{
+    (void)tile, (void)lanes, (void)row, (void)stride;
+}
+#endif
+
 /* Copies one channel between the tile's blocks and the image's rows. Rows of an image are padded to whole blocks. */
 static void transfer(const raster_tile *tile, const amb_image *image, int channel, int plane, bool to_image)
 {
@@ -27,6 +52,10 @@ static void transfer(const raster_tile *tile, const amb_image *image, int channe
         float *row = amb_image_row(image, channel, tile->y0 + y) + tile->x0;
         float *lanes = block_at(tile, 0, y / AMB_BLOCK_H) + plane * AMB_LANES;
         int rows = tile->bottom - y < AMB_BLOCK_H ? tile->bottom - y : AMB_BLOCK_H;
+        if (RASTER_STREAMS && to_image && rows == AMB_BLOCK_H) {
+            stream_rows(tile, lanes, row, image->stride);
+            continue;
+        }
         for (int x = 0; x < tile->right; x += AMB_BLOCK_W, lanes += (size_t)block_planes(tile) * AMB_LANES) {
             float block[AMB_LANES] = {0};
             if (to_image)
@@ -114,6 +143,9 @@ static void store_tile(const raster_tile *tile)
         transfer(tile, target->stencil, 0, tile->pass->stencil_plane, true);
     if (target->depth)
         transfer(tile, target->depth, 0, 0, true);
+#if RASTER_STREAMS
+    _mm_sfence();
+#endif
 }
 
 /* ---- playing ---------------------------------------------------------------------------------------------------- */
