@@ -26,7 +26,7 @@ typedef struct golden_case { /* what is rendered of every scene */
 } golden_case;
 
 static const golden_case cases[] = {
-    {"0", 160, 120, true}, {"3", 200, 150, false}, {"7.5", 97, 61, true}, {"1234.5", 61, 97, false}};
+    {"0", 96, 72, true}, {"3", 120, 90, false}, {"7.5", 61, 43, false}, {"1234.5", 43, 61, false}};
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
 
 typedef struct row {
