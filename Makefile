@@ -6,6 +6,10 @@
 ifeq ($(origin CC),default)
 CC := $(if $(shell command -v clang 2>/dev/null),clang,gcc)
 endif
+# All processors, unless told otherwise (make -j1).
+ifeq ($(filter -j%,$(MAKEFLAGS)),)
+MAKEFLAGS += -j$(shell nproc)
+endif
 BUILD   ?= build
 PREFIX  ?= /usr/local
 ASSETS  ?= pack

@@ -306,11 +306,14 @@ AMB_INLINE f32x light_reaching(const julia_uniforms *u, v3x from, f32x start, ma
 AMB_INLINE f32x openness(const julia_uniforms *u, v3x from, v3x normal)
 {
     static const float reach[3] = {0.04f, 0.12f, 0.3f}, weight[3] = {0.3f, 0.35f, 0.35f};
-    f32x open = f_set(0.0f);
-    for (int i = 0; i < 3; i++) {
-        f32x d = julia_distance(v3x_add(from, v3x_scale(normal, f_set(reach[i]))), &u->set);
-        open = open + f_saturate(d * (2.0f / reach[i])) * weight[i];
-    }
+    v3x at[3];
+    f32x d[3], open = f_set(0.0f);
+    for (int i = 0; i < 3; i++)
+        at[i] = v3x_add(from, v3x_scale(normal, f_set(reach[i])));
+    julia_distance_pair(at, d, &u->set);
+    d[2] = julia_distance(at[2], &u->set);
+    for (int i = 0; i < 3; i++)
+        open = open + f_saturate(d[i] * (2.0f / reach[i])) * weight[i];
     return open;
 }
 
