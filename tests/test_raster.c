@@ -156,7 +156,7 @@ static void random_triangles_cover_the_truth(void **state)
     (void)state;
     const int sizes[4][2] = {{64, 64}, {61, 67}, {64, 64}, {96, 33}};
     const int batch = 2500;
-    int64_t per_kind = long_form() ? 1000000 : 40000, drawn = 0;
+    int64_t per_kind = long_form() ? 250000 : 40000, drawn = 0;
     amb_context *context = NULL;
     assert_int_equal(amb_context_create(NULL, &context, NULL), AMB_OK);
     for (int kind = 0; kind < KINDS; kind++) {
