@@ -133,6 +133,7 @@ test: deps ## everything: both compilers, goldens, installed library, sanitizers
 
 .PHONY: asan ubsan sanitize tsan fuzz
 SAN := -fno-omit-frame-pointer -fno-sanitize-recover=all
+export LSAN_OPTIONS := suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0
 asan: ## the tests under AddressSanitizer and LeakSanitizer
 	$(MAKE) CC=clang BUILD=$(BUILD)/asan SANITIZE="-fsanitize=address $(SAN)" OPT=-O1 check
 ubsan: ## the tests under UndefinedBehaviorSanitizer
