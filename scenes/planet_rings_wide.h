@@ -7,12 +7,22 @@
 #include "shade/ring.h"
 
 typedef struct planet_rings {
-    planet_view view;
+    planet_view view;           /* its `scale` is the planet's, for its shadow */
     const amb_texture *map;     /* tint, opacity by radius */
     const amb_texture *scatter; /* back-, forward- and unlit-scattered intensity in r, g, b; NULL: flat shading */
     float brightness, shadow_sharpness;
     v3 gain; /* factors on the three intensities, to look at one alone; ignored when flat */
 } planet_rings;
+
+/* Sunlight that passes the planet on its way to a point of the rings. The spheroid of semi-axes view->scale is the unit
+ * sphere of coordinates divided by them, and lines stay lines. */
+AMB_INLINE f32x planet_rings_sunlight(const planet_view *view, v3x world, float sharpness)
+{
+    v3x inverse = v3x_splat((v3){1.0f / view->scale.x, 1.0f / view->scale.y, 1.0f / view->scale.z});
+    v3x at = v3x_mul(planet_to_own(view, world), inverse);
+    v3x to_sun = v3x_normalize(v3x_mul(planet_to_own(view, v3x_splat(view->to_sun)), inverse));
+    return ring_planet_shadow(at, to_sun, 1.0f, sharpness);
+}
 
 /* Corners 0 1 2 and 2 1 3 of the square that holds the annulus. */
 static void planet_rings_vertex(const amb_vs_in *in, amb_vs_out *out)
@@ -35,7 +45,11 @@ static void planet_rings_fragment(const amb_fs_in *in, amb_fs_out *out)
     v3x own = planet_to_own(view, v->world);
     f32x radius = f_sqrt(own.x * own.x + own.z * own.z);
     f32x along = (radius - RINGS_INNER) * (1.0f / (RINGS_OUTER - RINGS_INNER)), none = f_set(0.0f);
-    v2x uv = {along, f_set(0.5f)}, dx = {f_ddx(along), none}, dy = {f_ddy(along), none};
+    v2x uv = {along, f_set(0.5f)}, dx = {none, none}, dy = {none, none};
+#if AMB_LANES > 1
+    dx.x = f_ddx(along);
+    dy.x = f_ddy(along);
+#endif
     v4x map = amb_sample_2d_grad(u->map, &across, uv, dx, dy);
 
     v3x to_eye = v3x_normalize(v3x_sub(v3x_splat(view->eye), v->world)), to_sun = v3x_splat(view->to_sun);
@@ -46,7 +60,7 @@ static void planet_rings_fragment(const amb_fs_in *in, amb_fs_out *out)
         v3x s = v3x_mul(v4x_xyz(amb_sample_2d_grad(u->scatter, &across, uv, dx, dy)), v3x_splat(u->gain));
         light = light * ring_scatter(s.x, f_sel(lit, s.y, s.z), v3x_dot(to_sun, to_eye));
     }
-    light = light * ring_planet_shadow(v->world, to_sun, 1.0f, u->shadow_sharpness);
+    light = light * planet_rings_sunlight(view, v->world, u->shadow_sharpness);
     v3x colour = v3x_scale(v3x_mul(v4x_xyz(map), v3x_splat(view->sun_rgb)), light);
     f32x alpha = f_sel((along > 0.0f) & (along < 1.0f), map.w, none);
     out->live = out->live & (alpha > 0.0f);
@@ -54,7 +68,7 @@ static void planet_rings_fragment(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(colour, alpha);
 }
 
-static amb_status planet_rings_draw(amb_pass *pass, const planet_rings *u, amb_error *error)
+AMB_INLINE amb_status planet_rings_draw(amb_pass *pass, const planet_rings *u, amb_error *error)
 {
     amb_draw draw = planet_shell_draw("rings", planet_rings_vertex, planet_rings_fragment, &u->view, sizeof *u);
     draw.indices = NULL;

@@ -102,7 +102,7 @@ static amb_status saturn_draw(const void *opaque, const void *params, const plan
     surface.view.scale = (v3){1.0f, 1.0f - p->oblateness, 1.0f};
     amb_draw draw = planet_surface_draw(&surface);
     amb_status status = amb_pass_draw(pass, &draw, error);
-    planet_rings rings = {.view = *view,
+    planet_rings rings = {.view = surface.view,
                           .map = s->rings,
                           .scatter = s->scatter,
                           .brightness = p->ring_brightness,

@@ -79,7 +79,8 @@ static amb_status uranus_draw(const void *opaque, const void *params, const plan
     surface.view.scale = (v3){1.0f, 1.0f - p->oblateness, 1.0f};
     amb_draw draw = planet_surface_draw(&surface);
     amb_status status = amb_pass_draw(pass, &draw, error);
-    planet_rings rings = {.view = *view, .map = s->rings, .brightness = p->ring_brightness, .shadow_sharpness = 40.0f};
+    planet_rings rings = {
+        .view = surface.view, .map = s->rings, .brightness = p->ring_brightness, .shadow_sharpness = 40.0f};
     if (status == AMB_OK && p->show_rings)
         status = planet_rings_draw(pass, &rings, error);
     return status;

@@ -10,12 +10,13 @@ v4x WIDE(amb_uranus_colour)(v3x direction, const void *user);
 v4x WIDE(amb_neptune_colour)(v3x direction, const void *user);
 v4x WIDE(amb_sun_colour)(v3x direction, const void *user);
 
-/* Turns a direction about the poles: + moves what is seen there to the west of where it was. */
+/* Turns a direction about the poles toward -u of the painted map: a field of turned directions is the field moved
+ * toward +u, which is east on a planet. */
 static v3x turn(v3x d, f32x radians)
 {
     f32x s, c;
     f_sincos(radians, &s, &c);
-    return (v3x){d.x * c - d.z * s, d.y, d.x * s + d.z * c};
+    return (v3x){d.x * c + d.z * s, d.y, d.z * c - d.x * s};
 }
 
 /* A band table: colours at sines of latitude, joined by smooth steps. */
@@ -45,37 +46,100 @@ static const band jupiter_bands[] = {
     {0.82f, {0.44f, 0.40f, 0.37f}},   {1.00f, {0.30f, 0.28f, 0.27f}},
 };
 
-/* Angular speed of the jets, radians a key frame, by sine of latitude: belts and zones shear past each other. */
-static f32x jet_speed(f32x latitude)
+/* The Great Red Spot: place and semi-axes of its oval. */
+static const v3 spot_centre = {0.515f, -0.37f, -0.773f};
+static const v2 spot_size = {0.235f, 0.125f};
+
+typedef struct spot_place {
+    v3 east, north;
+    f32x x, y, r2, front; /* in semi-axes; squared distance; 1 on its side of the planet, else 0 */
+} spot_place;
+
+static spot_place spot_at(v3x d)
 {
-    f32x sine, cosine;
+    spot_place at = {.east = v3_normalize(v3_cross((v3){0, 1, 0}, spot_centre))};
+    at.north = v3_cross(spot_centre, at.east);
+    at.x = v3x_dot(d, v3x_splat(at.east)) * (1.0f / spot_size.x);
+    at.y = v3x_dot(d, v3x_splat(at.north)) * (1.0f / spot_size.y);
+    at.r2 = at.x * at.x + at.y * at.y;
+    at.front = f_sel(v3x_dot(d, v3x_splat(spot_centre)) > 0.0f, f_set(1.0f), f_set(0.0f));
+    return at;
+}
+
+/* Angular speed of the jets, radians a key frame, eastward: belts and zones shear past each other, and come to rest
+ * around the spot, which stays where it is. */
+static f32x jet_speed(v3x direction)
+{
+    f32x latitude = direction.y, sine, cosine;
     f_sincos(latitude * 15.0f, &sine, &cosine);
-    return JUPITER_KEY_DRIFT * (planet_bump(latitude, 0.0f, 0.12f) + 0.5f * cosine * (1.0f - f_abs(latitude)));
+    spot_place spot = spot_at(direction);
+    f32x moves = 1.0f - spot.front * (1.0f - f_smoothstep(f_set(1.0f), f_set(3.5f), spot.r2));
+    f32x jets = planet_bump(latitude, 0.0f, 0.12f) + 0.5f * cosine * (1.0f - f_abs(latitude));
+    return JUPITER_KEY_DRIFT * jets * moves;
 }
 
 v4x WIDE(amb_jupiter_velocity)(v3x direction, const void *user)
 {
     (void)user;
-    f32x v = 0.5f + jet_speed(direction.y) * (0.5f / (2.0f * JUPITER_KEY_DRIFT));
+    /* 128 of 255 is still, and 127 steps are twice the drift: what the scene reads it with. */
+    f32x v = (128.0f + jet_speed(direction) * (127.0f / (2.0f * JUPITER_KEY_DRIFT))) * (1.0f / 255.0f);
     return (v4x){v, v, v, f_set(1.0f)};
 }
 
-/* The Great Red Spot: an oval in which everything turns. */
+/* Everything in the spot turns. */
 static v3x spot_turn(v3x d, f32x *inside)
 {
-    const v3 centre = {0.515f, -0.37f, -0.773f};
-    v3 east = v3_normalize(v3_cross((v3){0, 1, 0}, centre)), north = v3_cross(centre, east);
-    f32x x = v3x_dot(d, v3x_splat(east)) * (1.0f / 0.235f), y = v3x_dot(d, v3x_splat(north)) * (1.0f / 0.125f);
-    f32x front = f_sel(v3x_dot(d, v3x_splat(centre)) > 0.0f, f_set(1.0f), f_set(0.0f));
-    f32x r2 = x * x + y * y;
-    *inside = front * (1.0f - f_smoothstep(f_set(0.45f), f_set(1.0f), r2));
-    f32x angle = front * f_exp(r2 * -1.1f) * 3.4f, s, c;
+    spot_place at = spot_at(d);
+    *inside = at.front * (1.0f - f_smoothstep(f_set(0.45f), f_set(1.0f), at.r2));
+    f32x angle = at.front * f_exp(at.r2 * -1.1f) * 3.4f, s, c;
     f_sincos(angle, &s, &c);
-    f32x new_x = (x * c - y * s) * 0.235f, new_y = (x * s + y * c) * 0.125f;
-    v3x moved = v3x_add(v3x_scale(v3x_splat(east), new_x), v3x_scale(v3x_splat(north), new_y));
+    f32x new_x = (at.x * c - at.y * s) * spot_size.x, new_y = (at.x * s + at.y * c) * spot_size.y;
+    v3x moved = v3x_add(v3x_scale(v3x_splat(at.east), new_x), v3x_scale(v3x_splat(at.north), new_y));
     f32x depth = f_sqrt(f_max(1.0f - v3x_dot(moved, moved), f_set(0.0f)));
-    moved = v3x_add(moved, v3x_scale(v3x_splat(centre), depth));
-    return v3x_sel((r2 < 6.0f) & (front > 0.5f), moved, d);
+    moved = v3x_add(moved, v3x_scale(v3x_splat(spot_centre), depth));
+    return v3x_sel((at.r2 < 6.0f) & (at.front > 0.5f), moved, d);
+}
+
+/* What the clouds' colour is made of. */
+typedef struct jupiter_flow {
+    f32x north, festoons, threads; /* how far latitudes are wound, as a sine; two noises */
+} jupiter_flow;
+
+static jupiter_flow flow_of(v3x d, uint32_t seed)
+{
+    v3x wound = planet_swirl(planet_swirl(d, 4.5f, 0.030f, seed + 1), 10.0f, 0.014f, seed + 2);
+    wound = planet_swirl(planet_swirl(wound, 22.0f, 0.0050f, seed + 3), 45.0f, 0.0018f, seed + 4);
+    return (jupiter_flow){
+        .north = wound.y - d.y,
+        .festoons = planet_fbm((v3x){wound.x * 5.0f, wound.y * 22.0f, wound.z * 5.0f}, seed + 5, 7),
+        .threads = planet_fbm((v3x){wound.x * 9.0f, wound.y * 75.0f, wound.z * 9.0f}, seed + 6, 5),
+    };
+}
+
+/* Two flows, each carried along by the jets over JUPITER_KEYS key frames and then begun anew while it is not seen: the
+ * last key leads on to the first without a step back (N. Max and B. Becker, "Flow Visualization Using Moving Textures",
+ * 1995). Weights are such that the sum's contrast stays. */
+static jupiter_flow jupiter_flow_at(v3x d, float key)
+{
+    jupiter_flow sum = {f_set(0.0f), f_set(0.0f), f_set(0.0f)};
+    f32x speed = jet_speed(d);
+    float weight[2], age[2];
+    for (int i = 0; i < 2; i++) {
+        age[i] = key + 2.0f * (float)i;
+        age[i] -= age[i] >= JUPITER_KEYS ? (float)JUPITER_KEYS : 0.0f;
+        weight[i] = age[i] < 0.5f * JUPITER_KEYS ? age[i] : JUPITER_KEYS - age[i];
+    }
+    float length = __builtin_sqrtf(weight[0] * weight[0] + weight[1] * weight[1]);
+    for (int i = 0; i < 2; i++) {
+        if (!(weight[i] > 0.0f))
+            continue;
+        float share = weight[i] / length;
+        jupiter_flow one = flow_of(turn(d, speed * (age[i] - 0.5f * JUPITER_KEYS)), 200u + 50u * (uint32_t)i);
+        sum.north = sum.north + one.north * share;
+        sum.festoons = sum.festoons + one.festoons * share;
+        sum.threads = sum.threads + one.threads * share;
+    }
+    return sum;
 }
 
 v4x WIDE(amb_jupiter_colour)(v3x direction, const void *user)
@@ -83,17 +147,13 @@ v4x WIDE(amb_jupiter_colour)(v3x direction, const void *user)
     const giant_frame *frame = user;
     f32x inside;
     v3x d = spot_turn(direction, &inside);
-    d = turn(d, jet_speed(d.y) * (frame ? frame->key : 0.0f));
-    v3x wound = planet_swirl(planet_swirl(d, 4.5f, 0.030f, 201), 10.0f, 0.014f, 202);
-    wound = planet_swirl(planet_swirl(wound, 22.0f, 0.0050f, 203), 45.0f, 0.0018f, 204);
-    f32x festoons = planet_fbm((v3x){wound.x * 5.0f, wound.y * 22.0f, wound.z * 5.0f}, 205, 7);
-    f32x threads = planet_fbm((v3x){wound.x * 9.0f, wound.y * 75.0f, wound.z * 9.0f}, 206, 5);
-    f32x calm = f_smoothstep(f_set(0.95f), f_set(0.55f), f_abs(wound.y));
+    jupiter_flow flow = jupiter_flow_at(d, frame ? frame->key : 0.0f);
+    f32x y = d.y + flow.north, calm = f_smoothstep(f_set(0.95f), f_set(0.55f), f_abs(y));
     v3x colour =
-        bands(jupiter_bands, (int)(sizeof jupiter_bands / sizeof *jupiter_bands), wound.y + festoons * 0.018f * calm);
-    colour = v3x_scale(colour, 1.0f + 0.20f * threads + 0.12f * festoons);
+        bands(jupiter_bands, (int)(sizeof jupiter_bands / sizeof *jupiter_bands), y + flow.festoons * 0.018f * calm);
+    colour = v3x_scale(colour, 1.0f + 0.20f * flow.threads + 0.12f * flow.festoons);
     v3x spot = planet_mix(v3x_splat((v3){0.50f, 0.155f, 0.065f}), (v3){0.66f, 0.34f, 0.19f},
-                          f_saturate(0.5f + festoons * 1.1f));
+                          f_saturate(0.5f + flow.festoons * 1.1f));
     colour = v3x_lerp(colour, spot, inside * 0.9f);
     return v4x_of3(v3x_max(colour, v3x_splat((v3){0, 0, 0})), f_set(1.0f));
 }
