@@ -86,30 +86,27 @@ static v3 turned_axis(float tilt, float turn, v3 axis)
     return m4_direction(rotation, axis);
 }
 
-planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,
-                           const amb_canvas *canvas, const planet_flight *flight)
+planet_view planet_view_of(const planet_state *state, const planet_params *params, double time,
+                           const amb_canvas *canvas, const amb_camera *camera)
 {
     const float degree = AMB_PI / 180.0f;
-    float at = planet_loop_time(job->time, flight->keys[flight->key_count - 1].time);
-    amb_camera camera = amb_camera_at(flight->keys, flight->key_count, at, flight->vertical_fov * degree, 0.01f, 100.0f,
-                                      canvas->width, canvas->height);
     float turn = params->turn * degree;
     if (params->day > 0.0f)
-        turn += planet_loop_time(job->time, params->day) / params->day * AMB_TWO_PI;
+        turn += planet_loop_time(time, params->day) / params->day * AMB_TWO_PI;
     float azimuth = params->sun_azimuth * degree, elevation = params->sun_elevation * degree;
     planet_view view = {
-        .world_to_clip = camera.world_to_clip,
-        .eye = camera.position,
-        .ray_origin = camera.ray_origin,
-        .ray_dx = camera.ray_dx,
-        .ray_dy = camera.ray_dy,
+        .world_to_clip = camera->world_to_clip,
+        .eye = camera->position,
+        .ray_origin = camera->ray_origin,
+        .ray_dx = camera->ray_dx,
+        .ray_dy = camera->ray_dy,
         .scale = {1, 1, 1},
         .shell = 1.0f,
         .to_sun = {f_cos(elevation) * f_sin(azimuth), f_sin(elevation), f_cos(elevation) * f_cos(azimuth)},
         .sun_rgb = {params->exposure, params->exposure, params->exposure},
         .sun_size = 1.0f,
         .star_gain = params->stars,
-        .time = (float)job->time,
+        .time = (float)time,
         .sphere = state->sphere,
         .stars = state->stars,
     };
@@ -118,6 +115,15 @@ planet_view planet_view_at(const planet_state *state, const planet_params *param
             turned_axis(params->tilt * degree, turn, (v3){(float)(i == 0), (float)(i == 1), (float)(i == 2)});
     memcpy(view.slot, canvas->slot, sizeof view.slot);
     return view;
+}
+
+planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,
+                           const amb_canvas *canvas, const planet_flight *flight)
+{
+    float at = planet_loop_time(job->time, flight->keys[flight->key_count - 1].time);
+    amb_camera camera = amb_camera_at(flight->keys, flight->key_count, at, flight->vertical_fov * (AMB_PI / 180.0f),
+                                      0.01f, 100.0f, canvas->width, canvas->height);
+    return planet_view_of(state, params, job->time, canvas, &camera);
 }
 
 amb_status planet_load_maps(amb_assets *assets, const planet_map_name *maps, size_t count, amb_error *error)

@@ -152,6 +152,10 @@ amb_status planet_load_maps(amb_assets *assets, const planet_map_name *maps, siz
 planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,
                            const amb_canvas *canvas, const planet_flight *flight);
 
+/* The same through any camera of the planet's frame. */
+planet_view planet_view_of(const planet_state *state, const planet_params *params, double time,
+                           const amb_canvas *canvas, const amb_camera *camera);
+
 /* `time` folded into [0, period). */
 float planet_loop_time(double time, float period);
 

@@ -7,6 +7,7 @@
 /* clang-format off */
 #define SCENES(X) \
     X(sun)        \
+    X(solar)      \
     X(mercury)    \
     X(venus)      \
     X(earth)      \

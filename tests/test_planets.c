@@ -7,6 +7,7 @@
 #include "scenes/builtin/paint.h"
 #include "scenes/planet_rings_wide.h"
 #include "scenes/planet_surface_wide.h"
+#include "scenes/solar.h"
 
 #include <ambiance/io.h>
 
@@ -578,6 +579,45 @@ static void test_earth_light_is_finite(void **state)
         }
 }
 
+/* ---- the tour --------------------------------------------------------------------------------------------------- */
+
+/* The flight keeps clear of every body, moves and turns without a jump, and shows each body large once. */
+static void test_tour_passes_every_body(void **state)
+{
+    (void)state;
+    solar_place place[SOLAR_BODIES];
+    amb_camera_key key[SOLAR_KEYS];
+    solar_places(place);
+    size_t count = solar_path(place, key);
+    assert_true(count <= SOLAR_KEYS && key[0].time == 0.0f && key[count - 1].time == SOLAR_SECONDS);
+    for (size_t i = 1; i < count; i++)
+        assert_true(key[i].time > key[i - 1].time);
+    double largest[SOLAR_BODIES] = {0}, most_turn = 0;
+    vec before = {0, 0, 0}, ahead_before = {0, 0, 0};
+    for (int i = 0; i <= 1200; i++) {
+        amb_camera camera =
+            amb_camera_at(key, count, (float)i * 0.1f, SOLAR_FOV * AMB_PI / 180.0f, 0.01f, 1000.0f, 4, 3);
+        vec eye = vec_of(camera.position), ahead = vec_unit(vec_add(vec_of(camera.target), eye, -1));
+        for (int b = 0; b < SOLAR_BODIES; b++) {
+            vec to_body = vec_add(vec_of(place[b].centre), eye, -1);
+            double distance = sqrt(vec_dot(to_body, to_body)) / (double)place[b].radius;
+            assert_true(distance > 1.5);
+            if (vec_dot(vec_unit(to_body), ahead) > 0.93)
+                largest[b] = fmax(largest[b], 1.0 / distance);
+        }
+        if (i > 0) {
+            vec step = vec_add(eye, before, -1);
+            assert_true(sqrt(vec_dot(step, step)) < 1.0);
+            most_turn = fmax(most_turn, acos(fmin(vec_dot(ahead, ahead_before), 1.0)) / 0.1 * 180 / PI);
+        }
+        before = eye, ahead_before = ahead;
+    }
+    print_message("fastest turn: %.1f degrees a second\n", most_turn);
+    assert_true(most_turn < 90);
+    for (int b = 0; b < SOLAR_BODIES; b++)
+        assert_true(largest[b] > 0.2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -585,7 +625,7 @@ int main(void)
         cmocka_unit_test(test_ring_shadow_on_the_planet), cmocka_unit_test(test_planet_shadow_on_the_rings),
         cmocka_unit_test(test_spheroid_normals),          cmocka_unit_test(test_no_seam_and_clean_poles),
         cmocka_unit_test(test_earth_components),          cmocka_unit_test(test_clouds_fade_at_the_limb),
-        cmocka_unit_test(test_earth_light_is_finite),
+        cmocka_unit_test(test_earth_light_is_finite),     cmocka_unit_test(test_tour_passes_every_body),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
