@@ -16,13 +16,14 @@
         .name = NAME "/irradiance", .about = "irradiance / pi of " NAME, .kind = ASSET_IRRADIANCE, .version = VERSION \
     }
 
-/* A latitude-longitude map, or rings by radius. */
-#define MAP(NAME, ABOUT, SRGB, VERSION, MAKE)                                                               \
+/* A latitude-longitude map, or rings by radius; PACKED_MAP: the pack has one too. */
+#define PACKED_MAP(NAME, ABOUT, SRGB, PACK, VERSION, MAKE)                                                  \
     {                                                                                                       \
         .name = NAME, .about = ABOUT, .kind = ASSET_TEXTURE, .srgb = SRGB,                                  \
-        .user_file = {NAME ".png", NAME ".jpg", NAME ".jpeg", NAME ".exr", NAME ".hdr"}, .pack_file = NULL, \
+        .user_file = {NAME ".png", NAME ".jpg", NAME ".jpeg", NAME ".exr", NAME ".hdr"}, .pack_file = PACK, \
         .version = VERSION, .make_texture = MAKE                                                            \
     }
+#define MAP(NAME, ABOUT, SRGB, VERSION, MAKE) PACKED_MAP(NAME, ABOUT, SRGB, NULL, VERSION, MAKE)
 
 const asset_row asset_table[] = {
     ENVIRONMENT("env/outdoor", "outdoor light: an HDR cube map or panorama", "env/outdoor.exr", 1, amb_builtin_sky),
@@ -65,15 +66,15 @@ const asset_row asset_table[] = {
     MAP("jupiter/color3", "Jupiter, key frame 3 of its drifting bands", true, 2, amb_builtin_jupiter_colour3),
     MAP("jupiter/color4", "Jupiter, key frame 4 of its drifting bands", true, 2, amb_builtin_jupiter_colour4),
     MAP("jupiter/velocity", "drift of its bands: 128 still, more to the right", false, 2, amb_builtin_jupiter_velocity),
-    MAP("saturn/color", "Saturn", true, 1, amb_builtin_saturn_colour),
+    PACKED_MAP("saturn/color", "Saturn", true, "saturn/color.jpg", 1, amb_builtin_saturn_colour),
     MAP("saturn/rings", "tint and opacity of its rings by radius", true, 1, amb_builtin_saturn_rings),
     MAP("saturn/scatter", "back-, forward- and unlit-scattered light of its rings", false, 1,
         amb_builtin_saturn_ring_scatter),
-    MAP("uranus/color", "Uranus", true, 1, amb_builtin_uranus_colour),
+    PACKED_MAP("uranus/color", "Uranus", true, "uranus/color.jpg", 1, amb_builtin_uranus_colour),
     MAP("uranus/rings", "tint and opacity of its rings by radius", true, 1, amb_builtin_uranus_rings),
-    MAP("neptune/color", "Neptune", true, 1, amb_builtin_neptune_colour),
+    PACKED_MAP("neptune/color", "Neptune", true, "neptune/color.jpg", 1, amb_builtin_neptune_colour),
     MAP("pluto/color", "Pluto", true, 1, amb_builtin_pluto_colour),
     MAP("pluto/gloss", "where its ice shines", false, 1, amb_builtin_pluto_gloss),
-    MAP("sun/color", "the surface of the sun", true, 1, amb_builtin_sun_colour),
+    PACKED_MAP("sun/color", "the surface of the sun", true, "sun/color.jpg", 1, amb_builtin_sun_colour),
 };
 const int asset_table_count = sizeof asset_table / sizeof *asset_table;
