@@ -69,7 +69,7 @@ BODIES(DECLARE)
 #define BODY(name) {&WIDE(planet_##name), &WIDE(amb_scene_##name)},
 static const struct {
     const planet_body *body;
-    const amb_scene *scene; /* its parameters' defaults are the tour's */
+    const amb_scene *scene; /* its parameters' defaults are the tour's, but for the sun's radiance */
 } bodies[SOLAR_BODIES] = {BODIES(BODY)};
 
 typedef struct solar_state {
@@ -102,7 +102,10 @@ static amb_status solar_load(const amb_context *context, amb_assets *assets, voi
             break;
         }
         amb_params_defaults(params, s->params[i]);
-        status = bodies[i].body->load(context, assets, &s->body[i], error);
+        if (i == 0) /* beside lit planets it outshines them */
+            status = amb_params_set(params, s->params[0], "scene solar", "radiance", "8", error);
+        if (status == AMB_OK)
+            status = bodies[i].body->load(context, assets, &s->body[i], error);
     }
     if (status != AMB_OK) {
         solar_unload(s);
