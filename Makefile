@@ -127,7 +127,8 @@ test: deps ## everything: both compilers, goldens, installed library, sanitizers
 	$(MAKE) CC=gcc BUILD=$(BUILD)/gcc all check
 	$(MAKE) CC=clang golden
 	$(MAKE) CC=clang test-install
-	$(MAKE) sanitize tsan
+	$(MAKE) sanitize
+	$(MAKE) tsan
 	$(MAKE) fuzz SECONDS=5
 	@echo "all tests passed"
 
@@ -145,7 +146,7 @@ sanitize: ## both of them in one build
 TSAN_TESTS ?= test_core test_raster test_rays test_post
 ARCHER     := $(firstword $(wildcard /usr/lib/llvm-*/lib/libarcher.so))
 tsan: ## the tests that run on several threads under ThreadSanitizer
-	OMP_TOOL_LIBRARIES=$(ARCHER) TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1" \
+	OMP_TOOL_LIBRARIES=$(ARCHER) TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1 suppressions=$(CURDIR)/tests/tsan.supp" \
 	    $(MAKE) CC=clang BUILD=$(BUILD)/tsan SANITIZE="-fsanitize=thread" OPT=-O1 tsan-run
 .PHONY: tsan-run
 tsan-run: $(addprefix $(BUILD)/tests/,$(TSAN_TESTS))

@@ -177,12 +177,12 @@ int amb_params_print(const amb_param *param, const void *values, char *text, siz
     int length = 0;
     for (int i = 0; i < components(param); i++) {
         float number;
+        char digits[40];
         memcpy(&number, field + (size_t)i * sizeof number, sizeof number);
-        size_t used = (size_t)length < size ? (size_t)length : size;
-        if (i)
-            length += snprintf(text + used, size - used, ",");
-        used = (size_t)length < size ? (size_t)length : size;
-        length += print_number(number, text + used, size - used);
+        print_number(number, digits, sizeof digits);
+        bool has_room = (size_t)length < size;
+        length += snprintf(has_room ? text + length : NULL, has_room ? size - (size_t)length : 0, "%s%s", i ? "," : "",
+                           digits);
     }
     return length;
 }
