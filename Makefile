@@ -6,9 +6,10 @@
 ifeq ($(origin CC),default)
 CC := $(if $(shell command -v clang 2>/dev/null),clang,gcc)
 endif
-# All processors, unless told otherwise (make -j1).
-ifeq ($(filter -j%,$(MAKEFLAGS)),)
-MAKEFLAGS += -j$(shell nproc)
+# Jobs at once: all processors, unless told otherwise (make JOBS=1).
+JOBS    ?= $(shell nproc)
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(JOBS)
 endif
 BUILD   ?= build
 PREFIX  ?= /usr/local
@@ -143,7 +144,7 @@ sanitize: ## both of them in one build
 	$(MAKE) CC=clang BUILD=$(BUILD)/sanitize SANITIZE="-fsanitize=address$(comma)undefined $(SAN)" OPT=-O1 check
 
 # Archer tells ThreadSanitizer about OpenMP's own synchronisation.
-TSAN_TESTS ?= test_core test_raster test_rays test_post
+TSAN_TESTS ?= test_core test_raster test_raster_state test_rays test_post
 ARCHER     := $(firstword $(wildcard /usr/lib/llvm-*/lib/libarcher.so))
 tsan: ## the tests that run on several threads under ThreadSanitizer
 	OMP_TOOL_LIBRARIES=$(ARCHER) TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1 suppressions=$(CURDIR)/tests/tsan.supp" \
