@@ -116,7 +116,8 @@ static void emit_cluster(void *user, const amb_reference *first, uint32_t n)
     if (rays->cluster_count == rays->cluster_limit) {
         uint32_t limit = rays->cluster_limit ? rays->cluster_limit + rays->cluster_limit / 2 : 64;
         bool numbered = limit <= INT32_MAX / AMB_CLUSTER; /* hits name triangles by a non-negative int */
-        amb_cluster *more = numbered ? aligned_alloc(64, (size_t)limit * sizeof *more) : NULL;
+        size_t bytes = ((size_t)limit * sizeof(amb_cluster) + 63) / 64 * 64;
+        amb_cluster *more = numbered ? aligned_alloc(64, bytes) : NULL;
         if (more == NULL) {
             e->full = true;
             return;
