@@ -2,12 +2,5 @@
 #include "bench/bench.h"
 
 const bench_workload *const bench_workloads[] = {
-    &bench_flops,
-    &bench_copy,
-    &bench_julia,
-    &bench_mesh,
-    &bench_post_bloom,
-    &bench_post_mlaa,
-    &bench_post_chain,
-    NULL,
+    &bench_flops, &bench_copy, &bench_julia, &bench_mesh, &bench_post_bloom, &bench_post_mlaa, &bench_post_chain, NULL,
 };

@@ -6,7 +6,8 @@
 #define ONE(name) LANES_CASE(name, 1, 1, { out[0] = f_##name(in[0]); })
 ONE(exp)
 ONE(exp2)
-ONE(log) ONE(log2) ONE(sin) ONE(cos) ONE(tan) ONE(asin) ONE(acos) ONE(atan) ONE(cbrt)
+ONE(log)
+ONE(log2) ONE(sin) ONE(cos) ONE(tan) ONE(asin) ONE(acos) ONE(atan) ONE(cbrt)
 #define TWO(name) LANES_CASE(name, 2, 1, { out[0] = f_##name(in[0], in[1]); })
     TWO(pow) TWO(atan2) LANES_CASE(sincos, 1, 2, { f_sincos(in[0], &out[0], &out[1]); })
 
@@ -20,7 +21,8 @@ ONE(log) ONE(log2) ONE(sin) ONE(cos) ONE(tan) ONE(asin) ONE(acos) ONE(atan) ONE(
 /* ---- wide.h ----------------------------------------------------------------------------------------------------- */
 ONE(sqrt)
 ONE(abs)
-ONE(trunc) ONE(floor) ONE(ceil) ONE(round) ONE(fract) ONE(saturate) TWO(min) TWO(max) TWO(copysign)
+ONE(trunc)
+ONE(floor) ONE(ceil) ONE(round) ONE(fract) ONE(saturate) TWO(min) TWO(max) TWO(copysign)
     LANES_CASE(clamp, 3, 1, { out[0] = f_clamp(in[0], in[1], in[2]); })
         LANES_CASE(lerp, 3, 1, { out[0] = f_lerp(in[0], in[1], in[2]); })
             LANES_CASE(smoothstep, 3, 1, { out[0] = f_smoothstep(in[0], in[1], in[2]); })

@@ -4,8 +4,17 @@
 #include <ambiance/vec.h>
 
 typedef enum marched_shape { MARCH_SPHERE, MARCH_TORUS, MARCH_BOX, MARCH_SHAPES } marched_shape;
-typedef struct marched_ray { v3 origin, direction; float t0, t1; int dead; } marched_ray;
-typedef struct marched_hit { int hit; float t, distance; int steps; float cone; } marched_hit;
+typedef struct marched_ray {
+    v3 origin, direction;
+    float t0, t1;
+    int dead;
+} marched_ray;
+typedef struct marched_hit {
+    int hit;
+    float t, distance;
+    int steps;
+    float cone;
+} marched_hit;
 
 #define MARCH_FOOTPRINT 1e-3f
 #define MARCH_TOLERANCE 0.1f

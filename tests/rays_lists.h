@@ -3,7 +3,11 @@
 
 #include <ambiance/rays.h>
 
-typedef struct listed_ray { v3 origin, direction; float t_near, t_far; int dead; } listed_ray;
+typedef struct listed_ray {
+    v3 origin, direction;
+    float t_near, t_far;
+    int dead;
+} listed_ray;
 typedef struct listed_hit {
     int hit, occluded;
     float t, u, v, t_exit;

@@ -13,21 +13,21 @@
 
 typedef struct amb_compare_options {
     bool use_tolerance, use_ulp;
-    double tolerance;  /* absolute, in the values' own units, 0 or more */
+    double tolerance; /* absolute, in the values' own units, 0 or more */
     uint64_t max_ulp;
     double peak;       /* of the PSNR; 0 means 1, display white */
     const char *layer; /* compare this layer only; NULL: all */
 } amb_compare_options;
 
 typedef struct amb_difference {
-    uint64_t values;    /* pairs looked at */
-    uint64_t differing; /* pairs whose bits differ */
-    uint64_t over;      /* pairs over the tolerance */
-    uint64_t nan;       /* differing pairs of which either is NaN; they count in nothing below */
-    double max_abs;     /* greatest |a - b|; infinite when an infinity met anything else */
-    uint64_t max_ulp;   /* greatest number of steps from float to float between a and b; 0 from -0 to +0 */
-    double rmse;        /* √(mean (a - b)²) */
-    double psnr;        /* 20·log10(peak / rmse), decibels; infinite when rmse is 0 */
+    uint64_t values;      /* pairs looked at */
+    uint64_t differing;   /* pairs whose bits differ */
+    uint64_t over;        /* pairs over the tolerance */
+    uint64_t nan;         /* differing pairs of which either is NaN; they count in nothing below */
+    double max_abs;       /* greatest |a - b|; infinite when an infinity met anything else */
+    uint64_t max_ulp;     /* greatest number of steps from float to float between a and b; 0 from -0 to +0 */
+    double rmse;          /* √(mean (a - b)²) */
+    double psnr;          /* 20·log10(peak / rmse), decibels; infinite when rmse is 0 */
     int worst_x, worst_y; /* pixel of the first greatest |a - b|, or else of the first differing value; -1 if none */
 } amb_difference;
 
@@ -41,14 +41,15 @@ typedef struct amb_compare_row { /* one channel of one layer */
 } amb_compare_row;
 
 typedef struct amb_comparison {
-    bool passed;            /* same size, same layers and channels, no value over */
-    bool sizes_differ;      /* then nothing was compared and there are no rows */
-    amb_difference total;   /* over all rows in both */
+    bool passed;          /* same size, same layers and channels, no value over */
+    bool sizes_differ;    /* then nothing was compared and there are no rows */
+    amb_difference total; /* over all rows in both */
     int row_count;
     amb_compare_row row[]; /* in A's order, then what only B has */
 } amb_comparison;
 
-/* Floats between a and b, counting every representable value once and both zeros as one; UINT64_MAX if either is NaN. */
+/* Floats between a and b, counting every representable value once and both zeros as one; UINT64_MAX if either is NaN.
+ */
 uint64_t amb_ulp_distance(float a, float b);
 
 /* One channel of two images of the same size. */

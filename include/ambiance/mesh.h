@@ -10,11 +10,11 @@
 
 typedef struct amb_mesh {
     uint32_t vertex_count, triangle_count;
-    v3 *position;      /* vertex_count; never NULL when vertex_count > 0 */
-    v3 *normal;        /* unit; NULL when the mesh has none */
-    v2 *uv;            /* v down; NULL when none */
-    v4 *tangent;       /* xyz unit, w = ±1: bitangent = w · normal × tangent; NULL when none */
-    uint32_t *index;   /* 3 · triangle_count; front faces counter-clockwise */
+    v3 *position;       /* vertex_count; never NULL when vertex_count > 0 */
+    v3 *normal;         /* unit; NULL when the mesh has none */
+    v2 *uv;             /* v down; NULL when none */
+    v4 *tangent;        /* xyz unit, w = ±1: bitangent = w · normal × tangent; NULL when none */
+    uint32_t *index;    /* 3 · triangle_count; front faces counter-clockwise */
     uint32_t *material; /* triangle_count, index into the file's materials; NULL: all 0 */
 } amb_mesh;
 

@@ -6,7 +6,8 @@
  *
  * Units: one cell is 1. |p| below 2²³ per component (above, floats have no fraction; Inf and NaN give NaN). To travel
  * further than float precision allows, keep p small and move lattice.x … by whole cells.
- * Stated ranges hold to rounding (2·10⁻⁶). Derivatives that a caller does not use cost nothing: all is inlined. Pure; any thread; same bits at every width. */
+ * Stated ranges hold to rounding (2·10⁻⁶). Derivatives that a caller does not use cost nothing: all is inlined. Pure;
+ * any thread; same bits at every width. */
 #ifndef AMBIANCE_NOISE_H
 #define AMBIANCE_NOISE_H
 

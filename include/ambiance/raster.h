@@ -15,14 +15,14 @@
 #include <ambiance/image.h>
 #include <ambiance/vec.h>
 
-#define AMB_MAX_TARGETS 16     /* colour attachments (AOVs among them) of one pass */
-#define AMB_MAX_VARYINGS 64    /* floats a vertex */
+#define AMB_MAX_TARGETS 16  /* colour attachments (AOVs among them) of one pass */
+#define AMB_MAX_VARYINGS 64 /* floats a vertex */
 
 /* ---- shaders ---------------------------------------------------------------------------------------------------- */
 
 typedef struct amb_vs_in {
     const void *uniforms;
-    i32x vertex;   /* index value (indexed draw) or running number; always valid, in dead lanes too */
+    i32x vertex; /* index value (indexed draw) or running number; always valid, in dead lanes too */
     i32x instance;
 } amb_vs_in;
 
@@ -57,7 +57,14 @@ typedef enum amb_cull { AMB_CULL_NONE, AMB_CULL_BACK, AMB_CULL_FRONT } amb_cull;
 typedef enum amb_compare {
     AMB_COMPARE_DEFAULT = 0, /* LESS; LESS_EQUAL for full-screen draws, so that a background at depth 1 fills what is
                               * still clear. Without a depth image every test passes. */
-    AMB_NEVER, AMB_LESS, AMB_EQUAL, AMB_LESS_EQUAL, AMB_GREATER, AMB_NOT_EQUAL, AMB_GREATER_EQUAL, AMB_ALWAYS
+    AMB_NEVER,
+    AMB_LESS,
+    AMB_EQUAL,
+    AMB_LESS_EQUAL,
+    AMB_GREATER,
+    AMB_NOT_EQUAL,
+    AMB_GREATER_EQUAL,
+    AMB_ALWAYS
 } amb_compare;
 typedef enum amb_topology {
     AMB_TRIANGLES,      /* corners 3i, 3i+1, 3i+2 */
@@ -77,22 +84,31 @@ typedef enum amb_blend {
 } amb_blend;
 
 typedef enum amb_factor {
-    AMB_FACTOR_ZERO, AMB_FACTOR_ONE,
-    AMB_FACTOR_SOURCE, AMB_FACTOR_ONE_MINUS_SOURCE,             /* the same channel of the shader's colour */
-    AMB_FACTOR_SOURCE_ALPHA, AMB_FACTOR_ONE_MINUS_SOURCE_ALPHA,
-    AMB_FACTOR_TARGET, AMB_FACTOR_ONE_MINUS_TARGET,             /* of the stored colour; an absent alpha is 1 */
-    AMB_FACTOR_TARGET_ALPHA, AMB_FACTOR_ONE_MINUS_TARGET_ALPHA,
-    AMB_FACTOR_SOURCE_ALPHA_SATURATE,                           /* min(source alpha, 1 - target alpha); for alpha 1 */
-    AMB_FACTOR_CONSTANT, AMB_FACTOR_ONE_MINUS_CONSTANT,         /* amb_draw.blend_constant */
-    AMB_FACTOR_SECOND, AMB_FACTOR_ONE_MINUS_SECOND,             /* of color[1], with one colour attachment */
-    AMB_FACTOR_SECOND_ALPHA, AMB_FACTOR_ONE_MINUS_SECOND_ALPHA,
+    AMB_FACTOR_ZERO,
+    AMB_FACTOR_ONE,
+    AMB_FACTOR_SOURCE,
+    AMB_FACTOR_ONE_MINUS_SOURCE, /* the same channel of the shader's colour */
+    AMB_FACTOR_SOURCE_ALPHA,
+    AMB_FACTOR_ONE_MINUS_SOURCE_ALPHA,
+    AMB_FACTOR_TARGET,
+    AMB_FACTOR_ONE_MINUS_TARGET, /* of the stored colour; an absent alpha is 1 */
+    AMB_FACTOR_TARGET_ALPHA,
+    AMB_FACTOR_ONE_MINUS_TARGET_ALPHA,
+    AMB_FACTOR_SOURCE_ALPHA_SATURATE, /* min(source alpha, 1 - target alpha); for alpha 1 */
+    AMB_FACTOR_CONSTANT,
+    AMB_FACTOR_ONE_MINUS_CONSTANT, /* amb_draw.blend_constant */
+    AMB_FACTOR_SECOND,
+    AMB_FACTOR_ONE_MINUS_SECOND, /* of color[1], with one colour attachment */
+    AMB_FACTOR_SECOND_ALPHA,
+    AMB_FACTOR_ONE_MINUS_SECOND_ALPHA,
 } amb_factor;
 
 typedef enum amb_blend_op {
     AMB_BLEND_SUM,        /* source · fs + target · ft */
     AMB_BLEND_DIFFERENCE, /* source · fs - target · ft */
     AMB_BLEND_REVERSE,    /* target · ft - source · fs */
-    AMB_BLEND_MIN, AMB_BLEND_MAX, /* of source and target, without factors; a NaN source gives the target */
+    AMB_BLEND_MIN,
+    AMB_BLEND_MAX, /* of source and target, without factors; a NaN source gives the target */
 } amb_blend_op;
 
 typedef struct amb_blend_equation {
@@ -101,12 +117,18 @@ typedef struct amb_blend_equation {
 } amb_blend_equation;
 
 typedef enum amb_stencil_op {
-    AMB_STENCIL_KEEP, AMB_STENCIL_ZERO, AMB_STENCIL_REPLACE, AMB_STENCIL_INCREMENT_CLAMP, AMB_STENCIL_DECREMENT_CLAMP,
-    AMB_STENCIL_INVERT, AMB_STENCIL_INCREMENT_WRAP, AMB_STENCIL_DECREMENT_WRAP,
+    AMB_STENCIL_KEEP,
+    AMB_STENCIL_ZERO,
+    AMB_STENCIL_REPLACE,
+    AMB_STENCIL_INCREMENT_CLAMP,
+    AMB_STENCIL_DECREMENT_CLAMP,
+    AMB_STENCIL_INVERT,
+    AMB_STENCIL_INCREMENT_WRAP,
+    AMB_STENCIL_DECREMENT_WRAP,
 } amb_stencil_op;
 
 typedef struct amb_stencil_face {
-    amb_compare compare;                     /* (reference & mask) against (stored & mask); DEFAULT: ALWAYS */
+    amb_compare compare; /* (reference & mask) against (stored & mask); DEFAULT: ALWAYS */
     amb_stencil_op fail, depth_fail, pass;
 } amb_stencil_face;
 
@@ -116,41 +138,44 @@ typedef struct amb_stencil {
     amb_stencil_face front, back;
 } amb_stencil;
 
-typedef struct amb_rect { int x, y, width, height; } amb_rect; /* pixels, y down */
+typedef struct amb_rect {
+    int x, y, width, height;
+} amb_rect; /* pixels, y down */
 
 typedef struct amb_draw {
-    const char *label; /* for statistics and errors; static storage; may be NULL */
-    int lanes;         /* AMB_LANES of the file the shaders were compiled in */
+    const char *label;            /* for statistics and errors; static storage; may be NULL */
+    int lanes;                    /* AMB_LANES of the file the shaders were compiled in */
     amb_vertex_shader vertex;     /* NULL: a full-screen draw: every pixel once, no varyings, counts below ignored */
     amb_fragment_shader fragment; /* NULL: depth only */
-    const void *uniforms; size_t uniforms_size; /* copied when recorded; pointers inside must outlive the pass */
-    int varying_floats;           /* sizeof(varyings) / sizeof(f32x), 0…AMB_MAX_VARYINGS */
-    const uint32_t *indices;      /* NULL: not indexed; must outlive the pass */
-    uint32_t count;               /* indices or vertices; a trailing partial primitive is dropped */
-    uint32_t vertex_count;        /* indices at or above it drop their triangle; 0 for non-indexed draws */
-    uint32_t instances;           /* 0 means 1 */
+    const void *uniforms;
+    size_t uniforms_size;    /* copied when recorded; pointers inside must outlive the pass */
+    int varying_floats;      /* sizeof(varyings) / sizeof(f32x), 0…AMB_MAX_VARYINGS */
+    const uint32_t *indices; /* NULL: not indexed; must outlive the pass */
+    uint32_t count;          /* indices or vertices; a trailing partial primitive is dropped */
+    uint32_t vertex_count;   /* indices at or above it drop their triangle; 0 for non-indexed draws */
+    uint32_t instances;      /* 0 means 1 */
     amb_cull cull;
-    bool front_clockwise;         /* as seen on the screen; default counter-clockwise is front */
+    bool front_clockwise; /* as seen on the screen; default counter-clockwise is front */
     amb_compare depth_compare;
     bool depth_write_off;
-    bool writes_depth;            /* the fragment shader writes out->depth: late depth test */
+    bool writes_depth; /* the fragment shader writes out->depth: late depth test */
     amb_blend blend[AMB_MAX_TARGETS];
-    uint32_t targets_off;         /* bit i: attachment i is not written */
+    uint32_t targets_off; /* bit i: attachment i is not written */
 
     amb_topology topology;
-    float point_size;             /* pixels, 0 means 1; at most 4096 */
-    bool wireframe;               /* triangles that are not culled are drawn as their three edges, by the line rule */
-    amb_rect scissor;             /* width and height 0: the whole target */
-    bool depth_clamp;             /* no near and far clipping; depth is clamped to 0…1 */
+    float point_size; /* pixels, 0 means 1; at most 4096 */
+    bool wireframe;   /* triangles that are not culled are drawn as their three edges, by the line rule */
+    amb_rect scissor; /* width and height 0: the whole target */
+    bool depth_clamp; /* no near and far clipping; depth is clamped to 0…1 */
     /* Added to a triangle's depth, as D3D11 for float depth: depth_bias · 2^(e - 23) + depth_bias_slope · m, where e is
      * the exponent of the triangle's largest depth and m = max(|∂z/∂x|, |∂z/∂y|); then at most (at least)
      * depth_bias_clamp, if it is above (below) 0. The sum is clamped to 0…1. */
     float depth_bias, depth_bias_slope, depth_bias_clamp;
-    uint8_t channels_off[AMB_MAX_TARGETS]; /* bit c: channel c of that attachment is not written */
+    uint8_t channels_off[AMB_MAX_TARGETS];        /* bit c: channel c of that attachment is not written */
     amb_blend_equation equation[AMB_MAX_TARGETS]; /* where blend is AMB_BLEND_EQUATION */
     v4 blend_constant;
-    amb_stencil stencil;          /* needs a stencil image */
-    bool alpha_to_coverage;       /* of n samples, only the first ⌊n·a + ½⌋ are written, a = alpha of color[0] in 0…1 */
+    amb_stencil stencil;    /* needs a stencil image */
+    bool alpha_to_coverage; /* of n samples, only the first ⌊n·a + ½⌋ are written, a = alpha of color[0] in 0…1 */
 } amb_draw;
 
 typedef struct amb_target {
@@ -158,9 +183,9 @@ typedef struct amb_target {
     amb_image *depth;                  /* one channel; may be NULL */
     amb_image *stencil;                /* one channel of whole numbers 0…255; may be NULL */
     v4 clear_color[AMB_MAX_TARGETS];
-    float clear_depth;                 /* used as it is: give 1 for the usual */
+    float clear_depth; /* used as it is: give 1 for the usual */
     uint8_t clear_stencil;
-    bool keep;                         /* true: start from the images' contents instead of the clear values */
+    bool keep; /* true: start from the images' contents instead of the clear values */
     /* 0 or 1; 2, 4 or 8: multisampling at D3D's standard positions. Triangles cover samples, lines and points whole
      * pixels; shaders run once a pixel, at its centre; depth, stencil and blending work on samples. At the end colours
      * are averaged, depth and stencil are those of sample 0. */
@@ -169,7 +194,7 @@ typedef struct amb_target {
 
 /* Counts of a pass, the same at any thread count. "triangles" are the primitives, lines and points too. */
 typedef struct amb_pass_stats {
-    uint64_t vertices;          /* vertex shader lanes alive */
+    uint64_t vertices; /* vertex shader lanes alive */
     uint64_t triangles_in;
     uint64_t triangles_clipped; /* cut by a plane */
     uint64_t triangles_culled;  /* dropped: bad index or vertex, outside, facing away, degenerate, on no pixel */

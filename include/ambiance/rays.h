@@ -1,5 +1,6 @@
 /* Ray queries: Embree's BVH with our own intersectors, so that every instruction set finds the same hits with the same
- * bits; equal distances go to the lower (geometry, primitive). Committed scenes are immutable: query from any thread. */
+ * bits; equal distances go to the lower (geometry, primitive). Committed scenes are immutable: query from any thread.
+ */
 #ifndef AMBIANCE_RAYS_H
 #define AMBIANCE_RAYS_H
 
@@ -9,7 +10,10 @@
 
 typedef struct amb_rays amb_rays;
 
-typedef struct amb_rays_sphere { v3 center; float radius; } amb_rays_sphere;
+typedef struct amb_rays_sphere {
+    v3 center;
+    float radius;
+} amb_rays_sphere;
 
 /* One geometry: exactly one of mesh and spheres is given. Geometry numbers are positions in the list. */
 typedef struct amb_rays_geometry {
@@ -31,11 +35,11 @@ typedef struct amb_rayx {
 
 typedef struct amb_hitx {
     maskx hit;
-    f32x t;                     /* t_far where nothing was hit */
-    f32x u, v;                  /* barycentrics of the triangle's 2nd and 3rd vertex; spheres: 0 */
-    i32x geometry, primitive;   /* -1 where nothing was hit */
-    f32x t_exit;                /* spheres: where the ray leaves; triangles: t; t_far where nothing was hit */
-    v3x normal;                 /* unit geometric normal; of a triangle by its winding; not flipped to the ray */
+    f32x t;                   /* t_far where nothing was hit */
+    f32x u, v;                /* barycentrics of the triangle's 2nd and 3rd vertex; spheres: 0 */
+    i32x geometry, primitive; /* -1 where nothing was hit */
+    f32x t_exit;              /* spheres: where the ray leaves; triangles: t; t_far where nothing was hit */
+    v3x normal;               /* unit geometric normal; of a triangle by its winding; not flipped to the ray */
 } amb_hitx;
 
 /* Lanes forms, one packet a call. Dead lanes cost nothing and come back as no hit. Rays whose origin or direction is

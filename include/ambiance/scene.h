@@ -19,19 +19,19 @@ typedef struct amb_aov {
 
 typedef struct amb_scene_job {
     const amb_context *context;
-    const void *params;   /* the scene's parameter struct, filled */
-    double time;          /* seconds, any finite value */
-    int width, height;    /* pixels */
-    amb_frame *frame;     /* "color" and every requested AOV are there, zeroed, to be filled */
+    const void *params; /* the scene's parameter struct, filled */
+    double time;        /* seconds, any finite value */
+    int width, height;  /* pixels */
+    amb_frame *frame;   /* "color" and every requested AOV are there, zeroed, to be filled */
 } amb_scene_job;
 
 typedef struct amb_scene {
     const char *name, *about;
-    float seconds;               /* length of its loop or flight */
+    float seconds; /* length of its loop or flight */
     amb_params params;
     const amb_aov *aovs;
     size_t aov_count;
-    const char *post;            /* its default chain, as --post reads it */
+    const char *post; /* its default chain, as --post reads it */
     /* Loads assets and builds what does not depend on time; *state is the scene's. */
     amb_status (*load)(const amb_context *context, amb_assets *assets, void **state, amb_error *error);
     /* Renders one frame; state is read-only. Several frames may be rendered at once. */
@@ -53,7 +53,8 @@ typedef struct amb_show amb_show;
 amb_status amb_show_open(const amb_context *context, amb_assets *assets, const char *scene, amb_show **out,
                          amb_error *error);
 amb_status amb_show_set(amb_show *show, const char *name, const char *value, amb_error *error);
-/* aovs: names, NULL-ended (NULL: none; "all" for every one). *out is the caller's to close. No post chain is applied. */
+/* aovs: names, NULL-ended (NULL: none; "all" for every one). *out is the caller's to close. No post chain is applied.
+ */
 amb_status amb_show_render(const amb_show *show, double time, int width, int height, const char *const *aovs,
                            amb_frame **out, amb_error *error);
 const amb_scene *amb_show_scene(const amb_show *show);

@@ -12,10 +12,14 @@
 typedef enum amb_texture_kind { AMB_TEXTURE_2D, AMB_TEXTURE_CUBE, AMB_TEXTURE_3D } amb_texture_kind;
 
 typedef enum amb_texel {
-    AMB_TEXEL_R8, AMB_TEXEL_RG8, AMB_TEXEL_RGBA8,  /* unorm */
+    AMB_TEXEL_R8,
+    AMB_TEXEL_RG8,
+    AMB_TEXEL_RGBA8,    /* unorm */
     AMB_TEXEL_SRGB8_A8, /* rgb sRGB-coded, alpha linear; decoded before filtering, to 11 bits (1/18 of a code) */
-    AMB_TEXEL_R16F, AMB_TEXEL_RGBA16F,
-    AMB_TEXEL_R32F, AMB_TEXEL_RGBA32F,
+    AMB_TEXEL_R16F,
+    AMB_TEXEL_RGBA16F,
+    AMB_TEXEL_R32F,
+    AMB_TEXEL_RGBA32F,
     AMB_TEXEL_R11G11B10F,
 } amb_texel; /* absent channels read 0, absent alpha 1 */
 
@@ -33,7 +37,7 @@ typedef struct amb_texture_desc {
     /* Level by level; in a level cube faces +x -x +y -y +z -z (D3D order and orientation), slices, rows from the top,
      * texels; tightly packed. Copied. */
     const void *data;
-    size_t data_bytes;        /* must match exactly */
+    size_t data_bytes; /* must match exactly */
 } amb_texture_desc;
 
 /* Errors: ARGUMENT, LIMIT, MEMORY. */
@@ -57,11 +61,11 @@ typedef enum amb_filter { AMB_NEAREST, AMB_BILINEAR, AMB_TRILINEAR } amb_filter;
 typedef enum amb_wrap { AMB_REPEAT, AMB_CLAMP, AMB_MIRROR } amb_wrap;
 
 typedef struct amb_sampler {
-    amb_filter filter;     /* BILINEAR uses the nearest mip, TRILINEAR blends two; NEAREST: the nearest of both */
-    amb_wrap wrap[3];      /* u, v, w; cubes ignore it: their edges are always seamless */
-    float lod_bias;        /* added to the computed level */
+    amb_filter filter;      /* BILINEAR uses the nearest mip, TRILINEAR blends two; NEAREST: the nearest of both */
+    amb_wrap wrap[3];       /* u, v, w; cubes ignore it: their edges are always seamless */
+    float lod_bias;         /* added to the computed level */
     float lod_min, lod_max; /* clamp of the level; lod_max 0 means no upper bound */
-    int max_anisotropy;    /* 0 or 1: isotropic; up to 16: EXT_texture_filter_anisotropic, 2D and cube _grad forms */
+    int max_anisotropy;     /* 0 or 1: isotropic; up to 16: EXT_texture_filter_anisotropic, 2D and cube _grad forms */
 } amb_sampler;
 
 /* Lanes forms. uv: 0…1 across the texture, v down. direction: any length. Results: r, g, b linear, a.
