@@ -7,49 +7,58 @@
 ONE(exp)
 ONE(exp2)
 ONE(log)
-ONE(log2) ONE(sin) ONE(cos) ONE(tan) ONE(asin) ONE(acos) ONE(atan) ONE(cbrt)
+ONE(log2)
+ONE(sin)
+ONE(cos)
+ONE(tan)
+ONE(asin)
+ONE(acos)
+ONE(atan)
+ONE(cbrt)
 #define TWO(name) LANES_CASE(name, 2, 1, { out[0] = f_##name(in[0], in[1]); })
-    TWO(pow) TWO(atan2) LANES_CASE(sincos, 1, 2, { f_sincos(in[0], &out[0], &out[1]); })
+TWO(pow)
+TWO(atan2)
+LANES_CASE(sincos, 1, 2, { f_sincos(in[0], &out[0], &out[1]); })
 
-        const lanes_case
-    WIDE(lanes_math)[] = {LANES_ENTRY(exp, 1, 1),   LANES_ENTRY(exp2, 1, 1),   LANES_ENTRY(log, 1, 1),
-                          LANES_ENTRY(log2, 1, 1),  LANES_ENTRY(sin, 1, 1),    LANES_ENTRY(cos, 1, 1),
-                          LANES_ENTRY(tan, 1, 1),   LANES_ENTRY(asin, 1, 1),   LANES_ENTRY(acos, 1, 1),
-                          LANES_ENTRY(atan, 1, 1),  LANES_ENTRY(cbrt, 1, 1),   LANES_ENTRY(pow, 2, 1),
-                          LANES_ENTRY(atan2, 2, 1), LANES_ENTRY(sincos, 1, 2), {0}};
+const lanes_case WIDE(lanes_math)[] = {LANES_ENTRY(exp, 1, 1),   LANES_ENTRY(exp2, 1, 1),   LANES_ENTRY(log, 1, 1),
+                                       LANES_ENTRY(log2, 1, 1),  LANES_ENTRY(sin, 1, 1),    LANES_ENTRY(cos, 1, 1),
+                                       LANES_ENTRY(tan, 1, 1),   LANES_ENTRY(asin, 1, 1),   LANES_ENTRY(acos, 1, 1),
+                                       LANES_ENTRY(atan, 1, 1),  LANES_ENTRY(cbrt, 1, 1),   LANES_ENTRY(pow, 2, 1),
+                                       LANES_ENTRY(atan2, 2, 1), LANES_ENTRY(sincos, 1, 2), {0}};
 
 /* ---- wide.h ----------------------------------------------------------------------------------------------------- */
 ONE(sqrt)
 ONE(abs)
 ONE(trunc)
-ONE(floor) ONE(ceil) ONE(round) ONE(fract) ONE(saturate) TWO(min) TWO(max) TWO(copysign)
-    LANES_CASE(clamp, 3, 1, { out[0] = f_clamp(in[0], in[1], in[2]); })
-        LANES_CASE(lerp, 3, 1, { out[0] = f_lerp(in[0], in[1], in[2]); })
-            LANES_CASE(smoothstep, 3, 1, { out[0] = f_smoothstep(in[0], in[1], in[2]); })
-                LANES_CASE(sel, 4, 1, { out[0] = f_sel((in[0] < in[1]) | ~(in[2] == in[3]), in[2], in[3]); })
-                    LANES_CASE(to_i, 1, 1, { out[0] = f_from_bits(f_to_i(in[0])); })
-                        LANES_CASE(from_i, 1, 1, { out[0] = i_to_f(f_bits(in[0])); })
-                            LANES_CASE(i_min_max, 2, 2,
-                                       {
-                                           out[0] = f_from_bits(i_min(f_bits(in[0]), f_bits(in[1])));
-                                           out[1] = f_from_bits(i_max(f_bits(in[0]), f_bits(in[1])));
-                                       }) LANES_CASE(classes, 1, 2,
-                                                     {
-                                                         out[0] = f_sel(f_is_nan(in[0]), f_set(1.0f), f_set(0.0f));
-                                                         out[1] = f_sel(f_is_finite(in[0]), f_set(1.0f), f_set(0.0f));
-                                                     })
+ONE(floor)
+ONE(ceil)
+ONE(round)
+ONE(fract)
+ONE(saturate)
+TWO(min)
+TWO(max)
+TWO(copysign)
+LANES_CASE(clamp, 3, 1, { out[0] = f_clamp(in[0], in[1], in[2]); })
+LANES_CASE(lerp, 3, 1, { out[0] = f_lerp(in[0], in[1], in[2]); })
+LANES_CASE(smoothstep, 3, 1, { out[0] = f_smoothstep(in[0], in[1], in[2]); })
+LANES_CASE(sel, 4, 1, { out[0] = f_sel((in[0] < in[1]) | ~(in[2] == in[3]), in[2], in[3]); })
+LANES_CASE(to_i, 1, 1, { out[0] = f_from_bits(f_to_i(in[0])); })
+LANES_CASE(from_i, 1, 1, { out[0] = i_to_f(f_bits(in[0])); })
+LANES_CASE(i_min_max, 2, 2, {
+    out[0] = f_from_bits(i_min(f_bits(in[0]), f_bits(in[1])));
+    out[1] = f_from_bits(i_max(f_bits(in[0]), f_bits(in[1])));
+})
+LANES_CASE(classes, 1, 2, {
+    out[0] = f_sel(f_is_nan(in[0]), f_set(1.0f), f_set(0.0f));
+    out[1] = f_sel(f_is_finite(in[0]), f_set(1.0f), f_set(0.0f));
+})
 
-                                const lanes_case
-    WIDE(lanes_primitives)[] = {LANES_ENTRY(sqrt, 1, 1),       LANES_ENTRY(abs, 1, 1),
-                                LANES_ENTRY(trunc, 1, 1),      LANES_ENTRY(floor, 1, 1),
-                                LANES_ENTRY(ceil, 1, 1),       LANES_ENTRY(round, 1, 1),
-                                LANES_ENTRY(fract, 1, 1),      LANES_ENTRY(saturate, 1, 1),
-                                LANES_ENTRY(min, 2, 1),        LANES_ENTRY(max, 2, 1),
-                                LANES_ENTRY(copysign, 2, 1),   LANES_ENTRY(clamp, 3, 1),
-                                LANES_ENTRY(lerp, 3, 1),       LANES_ENTRY(sel, 4, 1),
-                                LANES_ENTRY(smoothstep, 3, 1), LANES_ENTRY(to_i, 1, 1),
-                                LANES_ENTRY(from_i, 1, 1),     LANES_ENTRY(i_min_max, 2, 2),
-                                LANES_ENTRY(classes, 1, 2),    {0}};
+const lanes_case WIDE(lanes_primitives)[] = {
+    LANES_ENTRY(sqrt, 1, 1),   LANES_ENTRY(abs, 1, 1),       LANES_ENTRY(trunc, 1, 1),      LANES_ENTRY(floor, 1, 1),
+    LANES_ENTRY(ceil, 1, 1),   LANES_ENTRY(round, 1, 1),     LANES_ENTRY(fract, 1, 1),      LANES_ENTRY(saturate, 1, 1),
+    LANES_ENTRY(min, 2, 1),    LANES_ENTRY(max, 2, 1),       LANES_ENTRY(copysign, 2, 1),   LANES_ENTRY(clamp, 3, 1),
+    LANES_ENTRY(lerp, 3, 1),   LANES_ENTRY(sel, 4, 1),       LANES_ENTRY(smoothstep, 3, 1), LANES_ENTRY(to_i, 1, 1),
+    LANES_ENTRY(from_i, 1, 1), LANES_ENTRY(i_min_max, 2, 2), LANES_ENTRY(classes, 1, 2),    {0}};
 
 /* ---- what has lanes --------------------------------------------------------------------------------------------- */
 
