@@ -130,7 +130,7 @@ test: deps ## everything: both compilers, goldens, installed library, sanitizers
 	$(MAKE) CC=clang test-install
 	$(MAKE) sanitize
 	$(MAKE) tsan
-	$(MAKE) fuzz SECONDS=5
+	$(MAKE) fuzz FUZZ_LIMIT="-seed=1 -runs=4000"
 	@echo "all tests passed"
 
 .PHONY: asan ubsan sanitize tsan fuzz
@@ -154,12 +154,13 @@ tsan-run: $(addprefix $(BUILD)/tests/,$(TSAN_TESTS))
 	@for t in $^; do echo "== $$t (threads)"; $$t > $$t.log 2>&1 && tail -n 1 $$t.log || { cat $$t.log; exit 1; }; done
 
 SECONDS ?= 60
+FUZZ_LIMIT ?= -max_total_time=$(SECONDS)
 fuzz: ## every fuzz target for SECONDS each, from its corpus in tests/data, under AddressSanitizer and UBSan
 	$(MAKE) CC=clang BUILD=$(BUILD)/fuzz SANITIZE="-fsanitize=address$(comma)undefined$(comma)fuzzer-no-link $(SAN)" OPT=-O1 fuzz-run
 .PHONY: fuzz-run
 fuzz-run: $(FUZZERS)
-	@for f in $^; do name=$$(basename $$f); mkdir -p $(BUILD)/corpus/$$name; echo "== $$name, $(SECONDS) s"; \
-	    $$f -max_total_time=$(SECONDS) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
+	@for f in $^; do name=$$(basename $$f); mkdir -p $(BUILD)/corpus/$$name; echo "== $$name $(FUZZ_LIMIT)"; \
+	    $$f $(FUZZ_LIMIT) -timeout=10 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
 	        -artifact_prefix=$(BUILD)/corpus/$$name- $(BUILD)/corpus/$$name $$(ls -d tests/data/$$name 2>/dev/null) \
 	        > $$f.log 2>&1 && grep -E 'number_of_executed_units' $$f.log || { tail -n 40 $$f.log; exit 1; }; done
 
