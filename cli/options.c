@@ -157,7 +157,7 @@ static bool is_folder(const char *path)
 /* Where the pack lies relative to the program: in the build folder, or installed. */
 static const char *find_pack(char *path, size_t size)
 {
-    static const char *const places[] = {"assets", "../share/ambiance/pack"};
+    static const char *const places[] = {"assets", "../assets", "../share/ambiance/pack"};
     char program[PATH_MAX];
     ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
     if (length <= 0)
