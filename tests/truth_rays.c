@@ -13,7 +13,7 @@ static double d3_dot(d3 a, d3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 truth true_hit(const amb_mesh *m, const listed_ray *r)
 {
     const double margin = 2e-5;
-    truth best = {1, 0, -1, HUGE_VAL, 0, 0};
+    truth best = {.clear = 1, .primitive = -1, .t = HUGE_VAL};
     double second = HUGE_VAL;
     for (uint32_t i = 0; i < m->triangle_count; i++) {
         d3 a = d3_of(m->position[m->index[3 * i]]), b = d3_of(m->position[m->index[3 * i + 1]]);
@@ -30,7 +30,9 @@ truth true_hit(const amb_mesh *m, const listed_ray *r)
         }
         if (t < best.t) {
             second = best.t;
-            best = (truth){best.clear, 1, (int)i, t, u, v};
+            d3 n = d3_cross(e, f);
+            double length = sqrt(d3_dot(n, n));
+            best = (truth){best.clear, 1, (int)i, t, u, v, {n.x / length, n.y / length, n.z / length}};
         } else if (t < second) {
             second = t;
         }

@@ -9,6 +9,7 @@
 typedef struct truth {
     int clear, hit, primitive;
     double t, u, v;
+    double normal[3]; /* unit */
 } truth;
 
 /* Möller & Trumbore in double over all triangles. `clear` unless rounding in float could change the answer. */
