@@ -1,8 +1,8 @@
 /* Scene lucy: a statue in an HDR environment. Light from the environment's irradiance, dimmed where baked ambient
  * occlusion says so and turned towards the open; reflections from the cube map by Fresnel's law, or, where the mirrored
  * ray meets the statue again, from what it meets there. A large key light besides, with traced soft shadows. */
+#include "scenes/canvas.h"
 #include "scenes/lucy_shade.h"
-#include "scenes/supersample.h"
 
 #include <ambiance/math.h>
 
@@ -98,7 +98,6 @@ static const amb_aov lucy_aovs[OUT_COUNT] = {
     {"key", 3, "light of the key light, diffuse and specular"},
     {"depth", 1, "0 near plane ... 1 far plane"},
 };
-static bool mixes(int out) { return out >= OUT_ALBEDO && out != OUT_ID && out != OUT_DEPTH; }
 
 /* ---- a frame ----------------------------------------------------------------------------------------------------- */
 
@@ -155,43 +154,6 @@ static lucy_uniforms uniforms_of(const lucy_state *state, const lucy_params *p, 
     return u;
 }
 
-/* Images of one frame before it is resolved: the colour, the wanted outputs, and depth. */
-typedef struct lucy_images {
-    amb_image *depth, *image[OUT_COUNT]; /* image[0]: colour; the others by attachment */
-    int out[OUT_COUNT], count;           /* which output each attachment holds */
-} lucy_images;
-
-static amb_status create_images(const amb_scene_job *job, int factor, lucy_images *images, lucy_uniforms *u,
-                                amb_error *error)
-{
-    int width = job->width * factor, height = job->height * factor;
-    amb_status status = amb_image_create(width, height, 1, &images->depth, error);
-    if (status == AMB_OK)
-        status = amb_image_create(width, height, 4, &images->image[0], error);
-    images->count = 1;
-    for (int i = 0; i < OUT_DEPTH && status == AMB_OK; i++) {
-        if (amb_frame_layer(job->frame, lucy_aovs[i].name) == NULL)
-            continue;
-        u->slot[i] = images->count;
-        images->out[images->count] = i;
-        status = amb_image_create(width, height, lucy_aovs[i].channels, &images->image[images->count++], error);
-    }
-    return status;
-}
-
-static void resolve_images(const amb_scene_job *job, int factor, const lucy_images *images)
-{
-    amb_supersample_resolve(job->context, images->image[0], amb_frame_layer(job->frame, "color"), factor, true);
-    for (int i = 1; i < images->count; i++) {
-        int out = images->out[i];
-        amb_supersample_resolve(job->context, images->image[i], amb_frame_layer(job->frame, lucy_aovs[out].name),
-                                factor, mixes(out));
-    }
-    amb_image *depth = amb_frame_layer(job->frame, "depth");
-    if (depth != NULL)
-        amb_supersample_resolve(job->context, images->depth, depth, factor, false);
-}
-
 static amb_status draw_scene(amb_pass *pass, const lucy_uniforms *u, bool floor, uint32_t outputs_off, amb_error *error)
 {
     const amb_mesh *mesh = u->state->mesh;
@@ -241,26 +203,13 @@ static amb_status lucy_frame(const void *state, const amb_scene_job *job, amb_er
         amb_camera_at(camera_keys, sizeof camera_keys / sizeof *camera_keys, time, 36.0f * (AMB_PI / 180.0f), 0.1f,
                       40.0f, job->width * p->samples, job->height * p->samples);
     lucy_uniforms u = uniforms_of(state, p, &camera);
-    lucy_images images = {.count = 0};
-    amb_pass *pass = NULL;
-    amb_status status = create_images(job, p->samples, &images, &u, error);
-    if (status == AMB_OK) {
-        amb_target target = {.depth = images.depth, .clear_depth = 1.0f};
-        for (int i = 0; i < images.count; i++)
-            target.color[i] = images.image[i];
-        status = amb_pass_begin(job->context, &target, &pass, error);
-    }
-    if (status == AMB_OK)
-        status = draw_scene(pass, &u, p->floor != 0, ~1u, error);
-    if (status == AMB_OK)
-        status = amb_pass_finish(&pass, NULL, error);
-    if (status == AMB_OK)
-        resolve_images(job, p->samples, &images);
-    amb_pass_close(&pass);
-    amb_image_close(&images.depth);
-    for (int i = 0; i < images.count; i++)
-        amb_image_close(&images.image[i]);
-    return status;
+    amb_canvas canvas;
+    amb_status status = canvas_begin(job, lucy_aovs, OUT_COUNT, p->samples, &canvas, error);
+    if (status != AMB_OK)
+        return status;
+    memcpy(u.slot, canvas.slot, sizeof u.slot);
+    status = draw_scene(canvas.pass, &u, p->floor != 0, ~1u, error);
+    return canvas_finish(job, lucy_aovs, &canvas, status, error);
 }
 
 const amb_scene WIDE(amb_scene_lucy) = {
