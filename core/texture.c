@@ -8,7 +8,8 @@
 
 static const char *kind_name(amb_texture_kind kind)
 {
-    return kind == AMB_TEXTURE_2D ? "2D" : kind == AMB_TEXTURE_CUBE ? "cube" : "3D";
+    static const char *const name[] = {"2D", "cube", "3D", "2D array"};
+    return name[kind];
 }
 
 static amb_status check_size(const char *name, int size, amb_error *error)
@@ -24,7 +25,7 @@ static amb_status check_size(const char *name, int size, amb_error *error)
 static int full_chain(const amb_texture_info *info)
 {
     int size = info->width > info->height ? info->width : info->height, levels = 1;
-    if (info->depth > size)
+    if (info->kind == AMB_TEXTURE_3D && info->depth > size)
         size = info->depth;
     while (size >>= 1)
         levels++;
@@ -34,13 +35,15 @@ static int full_chain(const amb_texture_info *info)
 /* Fills what a texture made from the description will look like; levels is what the description itself gives. */
 static amb_status check_desc(const amb_texture_desc *d, amb_texture_info *info, amb_error *error)
 {
-    if (d->kind != AMB_TEXTURE_2D && d->kind != AMB_TEXTURE_CUBE && d->kind != AMB_TEXTURE_3D)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: kind %d is unknown; allowed are 2D, cube and 3D",
+    if ((int)d->kind < 0 || d->kind > AMB_TEXTURE_2D_ARRAY)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: kind %d is unknown; allowed are 2D, cube, 3D and 2D array",
                         (int)d->kind);
     if (!texel_bytes(d->texel))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: texel format %d is unknown; allowed are 0 to %d",
                         (int)d->texel, (int)AMB_TEXEL_R11G11B10F);
-    *info = (amb_texture_info){d->kind, d->texel, d->width, d->height, d->kind == AMB_TEXTURE_3D ? d->depth : 1, 0};
+    *info = (amb_texture_info){d->kind, d->texel, d->width, d->height, 1, 0};
+    if (d->kind == AMB_TEXTURE_3D || d->kind == AMB_TEXTURE_2D_ARRAY)
+        info->depth = d->depth;
     amb_status status = check_size("width", info->width, error);
     if (!status)
         status = check_size("height", info->height, error);

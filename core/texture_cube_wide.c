@@ -1,35 +1,7 @@
 /* Sampling of cube maps. Faces carry a border from their neighbours, so filtering is seamless without extra work. */
-#include "core/texture_fetch.h"
+#include "core/texture_coordinates.h"
 
-/* ---- faces ------------------------------------------------------------------------------------------------------ */
-
-/* A direction on its face: s right, t down in [-1, 1], major > 0 along the face's axis (OpenGL 4.6 table 8.19, which is
- * D3D's). Ties go to x, then y. */
-typedef struct {
-    i32x face;
-    maskx x_major, y_major, negative;
-} facex;
-
-AMB_INLINE facex pick_face(v3x d)
-{
-    f32x x = f_abs(d.x), y = f_abs(d.y), z = f_abs(d.z);
-    facex f;
-    f.x_major = (x >= y) & (x >= z);
-    f.y_major = ~f.x_major & (y >= z);
-    f.negative = f_sel(f.x_major, d.x, f_sel(f.y_major, d.y, d.z)) < 0.0f;
-    f.face = i_sel(f.x_major, i_set(0), i_sel(f.y_major, i_set(2), i_set(4))) + i_sel(f.negative, i_set(1), i_set(0));
-    return f;
-}
-
-/* Any vector in the face's frame: x = s axis, y = t axis, z = major axis. Linear, so it serves derivatives too. */
-AMB_INLINE v3x to_face(const facex *f, v3x d)
-{
-    f32x s_x = f_sel(f->negative, d.z, -d.z), s_z = f_sel(f->negative, -d.x, d.x);
-    f32x t_y = f_sel(f->negative, -d.z, d.z);
-    f32x major = f_sel(f->x_major, d.x, f_sel(f->y_major, d.y, d.z));
-    return v3x_of(f_sel(f->x_major, s_x, f_sel(f->y_major, d.x, s_z)), f_sel(f->y_major, t_y, -d.y),
-                  f_sel(f->negative, -major, major));
-}
+/* ---- footprints ------------------------------------------------------------------------------------------------- */
 
 /* Squared length in texels of level 0 of a change of direction: (ds - s·dm)/m on the face plane, half a face a unit. */
 AMB_INLINE f32x face_footprint(v3x on_face, v3x change, f32x half_width)
@@ -71,18 +43,13 @@ AMB_INLINE void sample_level_cube(const request_cube *r, texture_storage store, 
 AMB_INLINE void sample_levels_cube(const request_cube *r, texture_storage store, v3x direction,
                                    const lod_levels *levels, colorx *out)
 {
-    v3x d = v3x_of(finite_or_zero(direction.x), finite_or_zero(direction.y), finite_or_zero(direction.z));
-    facex f = pick_face(d);
-    v3x on_face = to_face(&f, d);
-    maskx somewhere = on_face.z > 0.0f; /* a zero direction looks at the middle of +x */
-    f32x u = f_sel(somewhere, on_face.x / on_face.z, f_set(0.0f)) * 0.5f + 0.5f;
-    f32x v = f_sel(somewhere, on_face.y / on_face.z, f_set(0.0f)) * 0.5f + 0.5f;
-    sample_level_cube(r, store, f.face, u, v, levels->near, out);
+    cube_point p = point_on_cube(direction);
+    sample_level_cube(r, store, p.face, p.u, p.v, levels->near, out);
     maskx between = levels->blend > 0.0f;
     if (!m_any(between))
         return;
     colorx far;
-    sample_level_cube(r, store, f.face, u, v, levels->far, &far);
+    sample_level_cube(r, store, p.face, p.u, p.v, levels->far, &far);
     for (int k = 0; k < storage_channels(store); k++)
         out->c[k] = f_sel(between, f_lerp(out->c[k], far.c[k], levels->blend), out->c[k]);
 }

@@ -39,10 +39,20 @@ struct amb_texture {
 
 /* Size of a dimension at a level. */
 AMB_INLINE int level_size(int size, int level) { return size >> level ? size >> level : 1; }
-/* Real slices (3D), faces (cube: 6) or 1 of a level. */
+/* Slices (3D), faces (cube: 6) or layers of a level. */
 AMB_INLINE int level_slices(const amb_texture_info *info, int level)
 {
-    return info->kind == AMB_TEXTURE_CUBE ? 6 : info->kind == AMB_TEXTURE_3D ? level_size(info->depth, level) : 1;
+    switch (info->kind) {
+    case AMB_TEXTURE_CUBE:
+        return 6;
+    case AMB_TEXTURE_3D:
+        return level_size(info->depth, level);
+    case AMB_TEXTURE_2D_ARRAY:
+        return info->depth;
+    case AMB_TEXTURE_2D:
+        break;
+    }
+    return 1;
 }
 /* The words of texel (x, y) of slice or face z; -1 is the border of a cube's face, the size is the padding. */
 AMB_INLINE uint32_t *texel_at(const amb_texture *t, int level, int x, int y, int z)

@@ -1,38 +1,5 @@
 /* Sampling of 2D and 3D textures. One function a storage kind, so that each is straight-line code. */
-#include "core/texture_fetch.h"
-
-/* ---- coordinates ------------------------------------------------------------------------------------------------ */
-
-/* The texel to the left of coordinate u (finite), from -1 to size-1, and the fraction to the next one. */
-AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
-{
-    f32x t;
-    if (wrap == AMB_REPEAT) {
-        t = (u - f_floor(u)) * size - 0.5f;
-    } else {
-        if (wrap == AMB_MIRROR) {
-            f32x pair = u * 0.5f;
-            u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
-        }
-        t = f_clamp(u * size - 0.5f, f_set(0.0f), size - 1.0f);
-    }
-    f32x left = f_floor(t);
-    i32x i = small_to_i(left);
-    *texel = i + ((i >> 31) & small_to_i(size)); /* left of the first comes the last */
-    return t - left;
-}
-
-/* The texel that contains coordinate u. */
-AMB_INLINE i32x wrap_nearest(f32x u, f32x size, amb_wrap wrap)
-{
-    if (wrap == AMB_REPEAT) {
-        u = u - f_floor(u);
-    } else if (wrap == AMB_MIRROR) {
-        f32x pair = u * 0.5f;
-        u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
-    }
-    return small_to_i(f_clamp(u * size, f_set(0.0f), size - 1.0f));
-}
+#include "core/texture_coordinates.h"
 
 /* ---- 2D --------------------------------------------------------------------------------------------------------- */
 
@@ -43,12 +10,16 @@ typedef struct {
     v2x uv, axis;
     f32x lod, taps;
     int most_taps;
+    bool layered;
+    i32x layer; /* of arrays */
 } request_2d;
 
 AMB_INLINE void sample_level_2d(const request_2d *r, texture_storage store, v2x uv, i32x level, colorx *out)
 {
     levelx l = level_at(r->texture, level);
     const amb_wrap *wrap = r->sampler->wrap;
+    if (r->layered)
+        l.base += r->layer * l.slice;
     if (r->sampler->filter == AMB_NEAREST) {
         i32x x = wrap_nearest(uv.x, l.width, wrap[0]), y = wrap_nearest(uv.y, l.height, wrap[1]);
         fetch_texel(r->texture, store, l.base + y * l.pitch + x, out);
@@ -130,16 +101,43 @@ AMB_INLINE v4x sample_2d(const request_2d *r)
 
 v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod)
 {
-    request_2d r = {texture, sampler, uv, {f_set(0.0f), f_set(0.0f)}, lod, f_set(1.0f), 1};
+    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .lod = lod, .taps = f_set(1.0f), .most_taps = 1};
     return sample_2d(&r);
 }
 
-v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy)
+AMB_INLINE request_2d request_with_gradients(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx,
+                                             v2x ddy)
 {
     f32x width = f_set(texture->width[0]), height = f_set(texture->height[0]);
     v2x dx = v2x_of(ddx.x * width, ddx.y * height), dy = v2x_of(ddy.x * width, ddy.y * height);
     footprintx f = footprint(v2x_dot(dx, dx), v2x_dot(dy, dy), sampler->max_anisotropy);
-    request_2d r = {texture, sampler, uv, v2x_sel(f.along_x, ddx, ddy), f.lod, f.taps, sampler->max_anisotropy};
+    return (request_2d){.texture = texture,
+                        .sampler = sampler,
+                        .uv = uv,
+                        .axis = v2x_sel(f.along_x, ddx, ddy),
+                        .lod = f.lod,
+                        .taps = f.taps,
+                        .most_taps = sampler->max_anisotropy};
+}
+
+v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy)
+{
+    request_2d r = request_with_gradients(texture, sampler, uv, ddx, ddy);
+    return sample_2d(&r);
+}
+
+v4x amb_sample_2d_array_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, f32x lod)
+{
+    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .lod = lod, .taps = f_set(1.0f), .most_taps = 1};
+    r.layered = true, r.layer = clamp_layer(texture, layer);
+    return sample_2d(&r);
+}
+
+v4x amb_sample_2d_array_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, v2x ddx,
+                             v2x ddy)
+{
+    request_2d r = request_with_gradients(texture, sampler, uv, ddx, ddy);
+    r.layered = true, r.layer = clamp_layer(texture, layer);
     return sample_2d(&r);
 }
 

@@ -3,6 +3,7 @@
 #ifndef AMBIANCE_RASTER_OUTPUT_H
 #define AMBIANCE_RASTER_OUTPUT_H
 
+#include "core/compare_lanes.h"
 #include "raster/internal.h"
 
 /* A tile being played. Its pixels lie block by block; a block holds `planes` runs of AMB_LANES floats: depth first,
@@ -100,28 +101,6 @@ AMB_INLINE void store_plane(const raster_pixels *at, int plane, f32x value, mask
 
 /* ---- depth and stencil ------------------------------------------------------------------------------------------ */
 
-static inline maskx depth_passes(amb_compare compare, f32x z, f32x stored)
-{
-    switch (compare) {
-    case AMB_LESS:
-        return z < stored;
-    case AMB_EQUAL:
-        return z == stored;
-    case AMB_LESS_EQUAL:
-        return z <= stored;
-    case AMB_GREATER:
-        return z > stored;
-    case AMB_NOT_EQUAL:
-        return z != stored;
-    case AMB_GREATER_EQUAL:
-        return z >= stored;
-    case AMB_ALWAYS:
-        return m_set(true);
-    default:
-        return m_set(false); /* NEVER */
-    }
-}
-
 static inline maskx stencil_passes(amb_compare compare, i32x reference, i32x stored)
 {
     switch (compare) {
@@ -184,7 +163,7 @@ static inline maskx stencil_matches(const amb_stencil *s, i32x stored, maskx fro
 static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
                                  maskx front, f32x depth)
 {
-    maskx passed = depth_passes(draw->depth_compare, depth, load_plane(at, base, false));
+    maskx passed = compare_lanes(draw->depth_compare, depth, load_plane(at, base, false));
     if (draw->stencil.on)
         passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, base, false), front);
     return passed;
@@ -203,7 +182,7 @@ static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw
                                          int base, maskx front, f32x depth, maskx live, bool packed)
 {
     const amb_stencil *s = &draw->stencil;
-    maskx near_enough = depth_passes(draw->depth_compare, depth, load_plane(at, base, packed)),
+    maskx near_enough = compare_lanes(draw->depth_compare, depth, load_plane(at, base, packed)),
           passed = live & near_enough;
     if (s->on) {
         i32x stored = load_stencil(tile, at, base, packed);

@@ -20,7 +20,7 @@ static void test_bad_descriptions(void **unused)
     } bad[] = {
         {{.kind = (amb_texture_kind)7, .texel = AMB_TEXEL_R8, .width = 8, .height = 8, .data = data, .data_bytes = 64},
          AMB_ERROR_ARGUMENT,
-         "texture: kind 7 is unknown; allowed are 2D, cube and 3D"},
+         "texture: kind 7 is unknown; allowed are 2D, cube, 3D and 2D array"},
         {{.texel = (amb_texel)9, .width = 8, .height = 8, .data = data, .data_bytes = 64},
          AMB_ERROR_ARGUMENT,
          "texture: texel format 9 is unknown; allowed are 0 to 8"},

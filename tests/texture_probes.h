@@ -11,13 +11,19 @@ typedef enum probe_mode {
     PROBE_3D_LOD,
     PROBE_CUBE_LOD,
     PROBE_CUBE_GRAD,
-    PROBE_CUBE_QUAD
+    PROBE_CUBE_QUAD,
+    PROBE_ARRAY_LOD,
+    PROBE_ARRAY_GRAD,
+    PROBE_COMPARE_2D, /* results in the first component */
+    PROBE_COMPARE_ARRAY,
+    PROBE_COMPARE_CUBE
 } probe_mode;
 
 typedef struct probe {
     float at[3];        /* uv, uvw or direction */
     float dx[3], dy[3]; /* its derivatives; unused by LOD and QUAD modes */
     float lod;
+    float layer, reference; /* of arrays; of comparisons */
 } probe;
 
 /* count must be a multiple of 16; QUAD modes take their quads from four probes in a row. lanes: 1, 4, 8 or 16. */

@@ -15,8 +15,10 @@ static v3x vector(const float *first, int floats_apart)
     return v3x_of(column(first, floats_apart), column(first + 1, floats_apart), column(first + 2, floats_apart));
 }
 
-static v4x sample(const amb_texture *t, const amb_sampler *s, probe_mode mode, v3x at, v3x dx, v3x dy, f32x lod)
+static v4x sample(const amb_texture *t, const amb_sampler *s, probe_mode mode, v3x at, v3x dx, v3x dy, f32x lod,
+                  i32x layer, f32x reference)
 {
+    f32x zero = f_set(0.0f);
     v2x uv = v2x_of(at.x, at.y), ux = v2x_of(dx.x, dx.y), uy = v2x_of(dy.x, dy.y);
     switch (mode) {
     case PROBE_2D_LOD:
@@ -29,6 +31,16 @@ static v4x sample(const amb_texture *t, const amb_sampler *s, probe_mode mode, v
         return amb_sample_cube_lod(t, s, at, lod);
     case PROBE_CUBE_GRAD:
         return amb_sample_cube_grad(t, s, at, dx, dy);
+    case PROBE_ARRAY_LOD:
+        return amb_sample_2d_array_lod(t, s, uv, layer, lod);
+    case PROBE_ARRAY_GRAD:
+        return amb_sample_2d_array_grad(t, s, uv, layer, ux, uy);
+    case PROBE_COMPARE_2D:
+        return (v4x){amb_compare_2d_lod(t, s, uv, reference, lod), zero, zero, zero};
+    case PROBE_COMPARE_ARRAY:
+        return (v4x){amb_compare_2d_array_lod(t, s, uv, layer, reference, lod), zero, zero, zero};
+    case PROBE_COMPARE_CUBE:
+        return (v4x){amb_compare_cube_lod(t, s, at, reference, lod), zero, zero, zero};
 #if AMB_LANES > 1
     case PROBE_2D_QUAD:
         return amb_sample_2d(t, s, uv);
@@ -49,8 +61,9 @@ void probe_texture_wide(const amb_texture *texture, const amb_sampler *sampler, 
 {
     const int apart = (int)(sizeof *in / sizeof(float));
     for (int i = 0; i < count; i += AMB_LANES) {
-        v4x c = sample(texture, sampler, mode, vector(in[i].at, apart), vector(in[i].dx, apart),
-                       vector(in[i].dy, apart), column(&in[i].lod, apart));
+        v4x c =
+            sample(texture, sampler, mode, vector(in[i].at, apart), vector(in[i].dx, apart), vector(in[i].dy, apart),
+                   column(&in[i].lod, apart), f_to_i(column(&in[i].layer, apart)), column(&in[i].reference, apart));
         for (int k = 0; k < AMB_LANES; k++) {
             v4 one = v4x_lane(c, k);
             memcpy(out[i + k], &one, sizeof one);

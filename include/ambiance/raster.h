@@ -12,8 +12,7 @@
 #define AMBIANCE_RASTER_H
 
 #include <ambiance/context.h>
-#include <ambiance/image.h>
-#include <ambiance/vec.h>
+#include <ambiance/texture.h>
 
 #define AMB_MAX_TARGETS 16  /* colour attachments (AOVs among them) of one pass */
 #define AMB_MAX_VARYINGS 64 /* floats a vertex */
@@ -54,18 +53,6 @@ typedef void (*amb_fragment_shader)(const amb_fs_in *in, amb_fs_out *out);
 /* ---- state ------------------------------------------------------------------------------------------------------ */
 
 typedef enum amb_cull { AMB_CULL_NONE, AMB_CULL_BACK, AMB_CULL_FRONT } amb_cull;
-typedef enum amb_compare {
-    AMB_COMPARE_DEFAULT = 0, /* LESS; LESS_EQUAL for full-screen draws, so that a background at depth 1 fills what is
-                              * still clear. Without a depth image every test passes. */
-    AMB_NEVER,
-    AMB_LESS,
-    AMB_EQUAL,
-    AMB_LESS_EQUAL,
-    AMB_GREATER,
-    AMB_NOT_EQUAL,
-    AMB_GREATER_EQUAL,
-    AMB_ALWAYS
-} amb_compare;
 typedef enum amb_topology {
     AMB_TRIANGLES,      /* corners 3i, 3i+1, 3i+2 */
     AMB_TRIANGLE_STRIP, /* i, i+1, i+2; odd triangles take the last two in the other order, so that faces agree */
@@ -155,8 +142,10 @@ typedef struct amb_draw {
     uint32_t vertex_count;   /* indices at or above it drop their triangle; 0 for non-indexed draws */
     uint32_t instances;      /* 0 means 1 */
     amb_cull cull;
-    bool front_clockwise; /* as seen on the screen; default counter-clockwise is front */
-    amb_compare depth_compare;
+    bool front_clockwise;      /* as seen on the screen; default counter-clockwise is front */
+    amb_compare depth_compare; /* the fragment's depth against the stored one. DEFAULT: LESS; LESS_EQUAL for full-screen
+                                * draws, so that a background at depth 1 fills what is still clear. Without a depth
+                                * image every test passes. */
     bool depth_write_off;
     bool writes_depth; /* the fragment shader writes out->depth: late depth test */
     amb_blend blend[AMB_MAX_TARGETS];

@@ -9,7 +9,12 @@
 #include <ambiance/image.h>
 #include <ambiance/vec.h>
 
-typedef enum amb_texture_kind { AMB_TEXTURE_2D, AMB_TEXTURE_CUBE, AMB_TEXTURE_3D } amb_texture_kind;
+typedef enum amb_texture_kind {
+    AMB_TEXTURE_2D,
+    AMB_TEXTURE_CUBE,
+    AMB_TEXTURE_3D,
+    AMB_TEXTURE_2D_ARRAY
+} amb_texture_kind;
 
 typedef enum amb_texel {
     AMB_TEXEL_R8,
@@ -31,11 +36,11 @@ typedef struct amb_texture amb_texture;
 typedef struct amb_texture_desc {
     amb_texture_kind kind;
     amb_texel texel;
-    int width, height, depth; /* texels; cube: width == height, depth ignored; 2D: depth ignored */
+    int width, height, depth; /* texels; cube: width == height; depth: of 3D, or layers of an array; else ignored */
     int levels;               /* levels given in `data`, each half the one before; 0 means 1 */
     bool make_mips;           /* complete the chain below the given levels with a box filter in linear light */
-    /* Level by level; in a level cube faces +x -x +y -y +z -z (D3D order and orientation), slices, rows from the top,
-     * texels; tightly packed. Copied. */
+    /* Level by level; in a level layers, cube faces +x -x +y -y +z -z (D3D order and orientation) or slices, rows from
+     * the top, texels; tightly packed. Copied. */
     const void *data;
     size_t data_bytes; /* must match exactly */
 } amb_texture_desc;
@@ -60,12 +65,25 @@ amb_texture_info amb_texture_describe(const amb_texture *texture);
 typedef enum amb_filter { AMB_NEAREST, AMB_BILINEAR, AMB_TRILINEAR } amb_filter;
 typedef enum amb_wrap { AMB_REPEAT, AMB_CLAMP, AMB_MIRROR } amb_wrap;
 
+typedef enum amb_compare {
+    AMB_COMPARE_DEFAULT, /* what it means is said where it is used */
+    AMB_NEVER,
+    AMB_LESS,
+    AMB_EQUAL,
+    AMB_LESS_EQUAL,
+    AMB_GREATER,
+    AMB_NOT_EQUAL,
+    AMB_GREATER_EQUAL,
+    AMB_ALWAYS
+} amb_compare;
+
 typedef struct amb_sampler {
     amb_filter filter;      /* BILINEAR uses the nearest mip, TRILINEAR blends two; NEAREST: the nearest of both */
     amb_wrap wrap[3];       /* u, v, w; cubes ignore it: their edges are always seamless */
     float lod_bias;         /* added to the computed level */
     float lod_min, lod_max; /* clamp of the level; lod_max 0 means no upper bound */
     int max_anisotropy;     /* 0 or 1: isotropic; up to 16: EXT_texture_filter_anisotropic, 2D and cube _grad forms */
+    amb_compare compare;    /* of comparison sampling: the reference against a texel; DEFAULT: LESS_EQUAL */
 } amb_sampler;
 
 /* Lanes forms. uv: 0…1 across the texture, v down. direction: any length. Results: r, g, b linear, a.
@@ -89,5 +107,25 @@ v4x amb_sample_cube_grad(const amb_texture *texture, const amb_sampler *sampler,
 v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x lod);
 #define amb_sample_3d_lod WIDE(amb_sample_3d_lod)
 v4x amb_sample_3d_lod(const amb_texture *texture, const amb_sampler *sampler, v3x uvw, f32x lod);
+
+/* Arrays: the layer is clamped to 0…depth-1. The plain 2D forms sample layer 0 of an array. */
+#define amb_sample_2d_array_grad WIDE(amb_sample_2d_array_grad)
+v4x amb_sample_2d_array_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, v2x ddx,
+                             v2x ddy);
+#define amb_sample_2d_array_lod WIDE(amb_sample_2d_array_lod)
+v4x amb_sample_2d_array_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, f32x lod);
+
+/* Comparison sampling, for shadow maps: each texel's red is compared, `reference OP red`, and it is the results, 1 or
+ * 0, that are filtered: BILINEAR is the 2×2 percentage-closer filter. Compares with a NaN fail, but NOT_EQUAL and
+ * ALWAYS pass. max_anisotropy is ignored. Source: Direct3D 11 SampleCmpLevelZero; Reeves, Salesin, Cook, "Rendering
+ * antialiased shadows with depth maps", 1987. */
+#define amb_compare_2d_lod WIDE(amb_compare_2d_lod)
+f32x amb_compare_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x reference, f32x lod);
+#define amb_compare_2d_array_lod WIDE(amb_compare_2d_array_lod)
+f32x amb_compare_2d_array_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer,
+                              f32x reference, f32x lod);
+#define amb_compare_cube_lod WIDE(amb_compare_cube_lod)
+f32x amb_compare_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x reference,
+                          f32x lod);
 
 #endif

@@ -1,0 +1,93 @@
+/* From coordinates to texels: wrapping, layers, cube faces. Shared by the samplers (texture*_wide.c). */
+#ifndef AMBIANCE_CORE_TEXTURE_COORDINATES_H
+#define AMBIANCE_CORE_TEXTURE_COORDINATES_H
+
+#include "core/texture_fetch.h"
+
+/* ---- wrapping --------------------------------------------------------------------------------------------------- */
+
+/* The texel to the left of coordinate u (finite), from -1 to size-1, and the fraction to the next one. */
+AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
+{
+    f32x t;
+    if (wrap == AMB_REPEAT) {
+        t = (u - f_floor(u)) * size - 0.5f;
+    } else {
+        if (wrap == AMB_MIRROR) {
+            f32x pair = u * 0.5f;
+            u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
+        }
+        t = f_clamp(u * size - 0.5f, f_set(0.0f), size - 1.0f);
+    }
+    f32x left = f_floor(t);
+    i32x i = small_to_i(left);
+    *texel = i + ((i >> 31) & small_to_i(size)); /* left of the first comes the last */
+    return t - left;
+}
+
+/* The texel that contains coordinate u. */
+AMB_INLINE i32x wrap_nearest(f32x u, f32x size, amb_wrap wrap)
+{
+    if (wrap == AMB_REPEAT) {
+        u = u - f_floor(u);
+    } else if (wrap == AMB_MIRROR) {
+        f32x pair = u * 0.5f;
+        u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
+    }
+    return small_to_i(f_clamp(u * size, f_set(0.0f), size - 1.0f));
+}
+
+/* A layer that exists. */
+AMB_INLINE i32x clamp_layer(const amb_texture *t, i32x layer)
+{
+    int last = t->info.kind == AMB_TEXTURE_2D_ARRAY ? t->info.depth - 1 : 0;
+    return i_min(i_max(layer, i_set(0)), i_set(last));
+}
+
+/* ---- faces ------------------------------------------------------------------------------------------------------ */
+
+/* A direction on its face: s right, t down in [-1, 1], major > 0 along the face's axis (OpenGL 4.6 table 8.19, which is
+ * D3D's). Ties go to x, then y. */
+typedef struct {
+    i32x face;
+    maskx x_major, y_major, negative;
+} facex;
+
+AMB_INLINE facex pick_face(v3x d)
+{
+    f32x x = f_abs(d.x), y = f_abs(d.y), z = f_abs(d.z);
+    facex f;
+    f.x_major = (x >= y) & (x >= z);
+    f.y_major = ~f.x_major & (y >= z);
+    f.negative = f_sel(f.x_major, d.x, f_sel(f.y_major, d.y, d.z)) < 0.0f;
+    f.face = i_sel(f.x_major, i_set(0), i_sel(f.y_major, i_set(2), i_set(4))) + i_sel(f.negative, i_set(1), i_set(0));
+    return f;
+}
+
+/* Any vector in the face's frame: x = s axis, y = t axis, z = major axis. Linear, so it serves derivatives too. */
+AMB_INLINE v3x to_face(const facex *f, v3x d)
+{
+    f32x s_x = f_sel(f->negative, d.z, -d.z), s_z = f_sel(f->negative, -d.x, d.x);
+    f32x t_y = f_sel(f->negative, -d.z, d.z);
+    f32x major = f_sel(f->x_major, d.x, f_sel(f->y_major, d.y, d.z));
+    return v3x_of(f_sel(f->x_major, s_x, f_sel(f->y_major, d.x, s_z)), f_sel(f->y_major, t_y, -d.y),
+                  f_sel(f->negative, -major, major));
+}
+
+typedef struct {
+    i32x face;
+    f32x u, v; /* 0…1 across the face */
+} cube_point;
+
+/* A zero direction looks at the middle of +x; components that are not finite count as 0. */
+AMB_INLINE cube_point point_on_cube(v3x direction)
+{
+    v3x d = v3x_of(finite_or_zero(direction.x), finite_or_zero(direction.y), finite_or_zero(direction.z));
+    facex f = pick_face(d);
+    v3x on_face = to_face(&f, d);
+    maskx somewhere = on_face.z > 0.0f;
+    return (cube_point){f.face, f_sel(somewhere, on_face.x / on_face.z, f_set(0.0f)) * 0.5f + 0.5f,
+                        f_sel(somewhere, on_face.y / on_face.z, f_set(0.0f)) * 0.5f + 0.5f};
+}
+
+#endif
