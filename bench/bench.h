@@ -26,6 +26,17 @@ typedef struct bench_count {
     const char *unit;
 } bench_count;
 
+/* Further figures of a workload: what its stages take, what it counts. */
+enum { BENCH_MAX_FACTS = 24 };
+typedef struct bench_facts {
+    int count;
+    struct {
+        const char *name, *unit; /* static */
+        double value;
+    } fact[BENCH_MAX_FACTS];
+} bench_facts;
+void bench_fact(bench_facts *facts, const char *name, double value, const char *unit); /* appends */
+
 typedef struct bench_workload {
     const char *name, *about;
     amb_status (*open)(const bench_options *options, void **state, amb_error *error);
@@ -39,13 +50,17 @@ typedef struct bench_workload {
     amb_status (*difference)(void *state, double *rmse, amb_error *error);
     /* Of one run on a context; may be NULL. */
     bench_count (*count)(const void *state, const amb_context *context);
+    /* Once, untimed, on the widest context with all threads; may be NULL. */
+    amb_status (*facts)(void *state, const amb_context *context, bench_facts *facts, amb_error *error);
     void (*close)(void *state);     /* NULL is allowed */
     double peer_goal;               /* times the peer's speed that we aim at; 0: none */
     double threads_goal, wide_goal; /* all threads against one; v3 against v2; 0: none */
 } bench_workload;
 
 extern const bench_workload *const bench_workloads[]; /* NULL-ended; the first two measure the machine's peaks */
-extern const bench_workload bench_flops, bench_copy, bench_mesh, bench_julia;
+extern const bench_workload bench_flops, bench_copy, bench_julia;
+extern const bench_workload bench_layers, bench_mesh, bench_mesh_million, bench_mesh_samples, bench_tiny, bench_shadow;
+extern const bench_workload bench_draws, bench_memory;
 extern const bench_workload bench_post_bloom, bench_post_mlaa, bench_post_chain;
 
 double bench_seconds(void); /* a clock that only goes forward */

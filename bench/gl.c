@@ -125,31 +125,69 @@ amb_status gl_program(const char *vertex, const char *fragment, GLuint *out, amb
     return status;
 }
 
-amb_status gl_target_create(int width, int height, gl_target *out, amb_error *error)
+static amb_status check_frame(const gl_target *t, const char *what, amb_error *error)
+{
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        return amb_fail(error, AMB_ERROR_NOT_FOUND, "no peer: it cannot render to %s of %dx%d", what, t->width,
+                        t->height);
+    glViewport(0, 0, t->width, t->height);
+    return gl_check(error);
+}
+
+static GLuint renderbuffer(GLenum attachment, GLenum format, int samples, const gl_target *t)
+{
+    GLuint name;
+    glGenRenderbuffers(1, &name);
+    glBindRenderbuffer(GL_RENDERBUFFER, name);
+    if (samples > 1)
+        glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, t->width, t->height);
+    else
+        glRenderbufferStorage(GL_RENDERBUFFER, format, t->width, t->height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, name);
+    return name;
+}
+
+amb_status gl_target_create(int width, int height, int samples, gl_target *out, amb_error *error)
 {
     *out = (gl_target){.width = width, .height = height};
     glGenFramebuffers(1, &out->frame);
-    glGenRenderbuffers(1, &out->color);
-    glGenRenderbuffers(1, &out->depth);
-    glBindRenderbuffer(GL_RENDERBUFFER, out->color);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, width, height);
-    glBindRenderbuffer(GL_RENDERBUFFER, out->depth);
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
     glBindFramebuffer(GL_FRAMEBUFFER, out->frame);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, out->color);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, out->depth);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return amb_fail(error, AMB_ERROR_NOT_FOUND, "no peer: it cannot render to 32-bit float");
-    glViewport(0, 0, width, height);
-    return gl_check(error);
+    out->color = renderbuffer(GL_COLOR_ATTACHMENT0, GL_RGBA16F, samples, out);
+    out->depth = renderbuffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT32F, samples, out);
+    return check_frame(out, "half floats", error);
+}
+
+amb_status gl_depth_target_create(int width, int height, gl_target *out, amb_error *error)
+{
+    *out = (gl_target){.width = width, .height = height};
+    glGenFramebuffers(1, &out->frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, out->frame);
+    glGenTextures(1, &out->depth);
+    glBindTexture(GL_TEXTURE_2D, out->depth);
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT32F, width, height);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, out->depth, 0);
+    return check_frame(out, "depth", error);
 }
 
 void gl_target_close(gl_target *target)
 {
     glDeleteFramebuffers(1, &target->frame);
-    glDeleteRenderbuffers(1, &target->color);
-    glDeleteRenderbuffers(1, &target->depth);
+    if (target->color) {
+        glDeleteRenderbuffers(1, &target->color);
+        glDeleteRenderbuffers(1, &target->depth);
+    } else {
+        glDeleteTextures(1, &target->depth);
+    }
     *target = (gl_target){0};
+}
+
+void gl_resolve(const gl_target *multisampled, const gl_target *to)
+{
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, multisampled->frame);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to->frame);
+    glBlitFramebuffer(0, 0, to->width, to->height, 0, 0, to->width, to->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 void gl_read(const gl_target *target, float *rgba)

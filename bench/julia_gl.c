@@ -225,12 +225,6 @@ static void set_parameters(GLuint program, const julia_twin *twin)
     }
 }
 
-static void set3(GLuint program, const char *name, v3 a)
-{
-    glUniform3f(glGetUniformLocation(program, name), a.x, a.y, a.z);
-}
-static void set1(GLuint program, const char *name, float a) { glUniform1f(glGetUniformLocation(program, name), a); }
-
 static void set_uniforms(GLuint program, const julia_twin *twin)
 {
     const julia_set *set = &twin->set;
@@ -238,16 +232,16 @@ static void set_uniforms(GLuint program, const julia_twin *twin)
     glUseProgram(program);
     set_parameters(program, twin);
     glUniform4f(glGetUniformLocation(program, "c"), set->c.x, set->c.y, set->c.z, set->c.w);
-    set3(program, "axis", set->axis);
-    set1(program, "along", set->along);
-    set1(program, "ball", set->radius);
-    set3(program, "eye", camera->position);
-    set3(program, "ray_origin", camera->ray_origin);
-    set3(program, "ray_dx", camera->ray_dx);
-    set3(program, "ray_dy", camera->ray_dy);
-    set3(program, "to_light", v3_normalize(julia_parameter3(twin, "light_direction")));
-    set1(program, "footprint", v3_length(camera->ray_dy) * 0.5f);
-    set1(program, "cone", v3_length(camera->ray_dy) * 0.5f * 2.0f * julia_parameter(twin, "tolerance"));
+    gl_set3(program, "axis", set->axis);
+    gl_set1(program, "along", set->along);
+    gl_set1(program, "ball", set->radius);
+    gl_set3(program, "eye", camera->position);
+    gl_set3(program, "ray_origin", camera->ray_origin);
+    gl_set3(program, "ray_dx", camera->ray_dx);
+    gl_set3(program, "ray_dy", camera->ray_dy);
+    gl_set3(program, "to_light", v3_normalize(julia_parameter3(twin, "light_direction")));
+    gl_set1(program, "footprint", v3_length(camera->ray_dy) * 0.5f);
+    gl_set1(program, "cone", v3_length(camera->ray_dy) * 0.5f * 2.0f * julia_parameter(twin, "tolerance"));
     glUniform2f(glGetUniformLocation(program, "size"), (float)twin->width, (float)twin->height);
     glUniform1i(glGetUniformLocation(program, "starts"), 0);
     glUniform1i(glGetUniformLocation(program, "environment"), 1);
@@ -272,7 +266,7 @@ static amb_status make_starts(gl_target *out, int tile, const julia_twin *twin, 
 amb_status julia_peer_open(julia_peer *p, const julia_twin *twin, amb_error *error)
 {
     *p = (julia_peer){0};
-    amb_status status = gl_target_create(twin->width, twin->height, &p->target, error);
+    amb_status status = gl_target_create(twin->width, twin->height, 1, &p->target, error);
     if (!status)
         status = make_starts(&p->coarse, JULIA_COARSE_TILE, twin, error);
     if (!status)
@@ -304,7 +298,7 @@ static void draw(const gl_target *target, GLuint program)
 static void draw_cones(const julia_peer *p, const gl_target *target, int tile, bool first)
 {
     glUseProgram(p->cone);
-    set1(p->cone, "tile", (float)tile);
+    gl_set1(p->cone, "tile", (float)tile);
     glUniform1i(glGetUniformLocation(p->cone, "first"), first);
     draw(target, p->cone);
 }

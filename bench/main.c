@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MAX_ROWS = 8, MAX_ROUNDS = 101 };
+enum { MAX_ROWS = 8, MAX_ROUNDS = 101, MAX_SECONDS = 12 };
 
 typedef struct row {
     amb_isa isa; /* 0: the peer */
@@ -25,6 +25,7 @@ typedef struct report {
     int rows;
     row row[MAX_ROWS];
     double rmse; /* < 0: no peer */
+    bench_facts facts;
     char failure[600];
 } report;
 
@@ -42,6 +43,15 @@ double bench_seconds(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void bench_fact(bench_facts *facts, const char *name, double value, const char *unit)
+{
+    if (facts->count == BENCH_MAX_FACTS)
+        return;
+    facts->fact[facts->count].name = name;
+    facts->fact[facts->count].unit = unit;
+    facts->fact[facts->count++].value = value;
 }
 
 double bench_rmse(const amb_image *image, const float *rgba)
@@ -99,10 +109,15 @@ static amb_status run_row(const bench_workload *w, void *state, row *r, double *
     return status;
 }
 
-/* All rows take turns, round by round; round -1 warms up. */
+/* All rows take turns, round by round; round -1 warms up. Slow workloads get fewer rounds, at least 3. */
 static amb_status measure(const settings *set, report *r, void *state, amb_error *error)
 {
-    for (int round = -1; round < set->rounds; round++)
+    double start = bench_seconds();
+    int rounds = 0;
+    for (int round = -1; round < set->rounds; round++) {
+        if (round >= 3 && bench_seconds() - start > MAX_SECONDS)
+            break;
+        rounds = round + 1;
         for (int i = 0; i < r->rows; i++) {
             double seconds;
             amb_status status = run_row(r->workload, state, &r->row[i], &seconds, error);
@@ -111,17 +126,26 @@ static amb_status measure(const settings *set, report *r, void *state, amb_error
             if (round >= 0)
                 r->row[i].seconds[round] = seconds;
         }
+    }
     for (int i = 0; i < r->rows; i++) {
         row *n = &r->row[i];
-        qsort(n->seconds, (size_t)set->rounds, sizeof *n->seconds, by_value);
+        qsort(n->seconds, (size_t)rounds, sizeof *n->seconds, by_value);
         n->best = n->seconds[0];
-        n->median = 0.5 * (n->seconds[set->rounds / 2] + n->seconds[(set->rounds - 1) / 2]);
+        n->median = 0.5 * (n->seconds[rounds / 2] + n->seconds[(rounds - 1) / 2]);
         if (n->isa && r->workload->count)
             n->count = r->workload->count(state, n->context);
     }
     if (r->row[0].isa == 0 && r->workload->difference)
         return r->workload->difference(state, &r->rmse, error);
     return AMB_OK;
+}
+
+static const row *widest(const report *r, int threads);
+
+static amb_status tell_facts(const settings *set, report *r, void *state, amb_error *error)
+{
+    const row *best = widest(r, set->options.threads);
+    return r->workload->facts && best ? r->workload->facts(state, best->context, &r->facts, error) : AMB_OK;
 }
 
 static void run_workload(const settings *set, report *r)
@@ -134,6 +158,8 @@ static void run_workload(const settings *set, report *r)
         status = add_rows(set, r, &error);
     if (!status)
         status = measure(set, r, state, &error);
+    if (!status)
+        status = tell_facts(set, r, state, &error);
     if (status)
         snprintf(r->failure, sizeof r->failure, "%s: %s", amb_status_text(status), error.detail);
     r->workload->close(state);
@@ -245,6 +271,15 @@ static void print_report(const settings *set, const report *peaks, const report 
     }
     if (r->rmse >= 0.0)
         printf("  the two pictures differ by %.2g RMSE\n", r->rmse);
+    for (int i = 0; i < r->facts.count; i++)
+        printf("%s%s %.*f%s",
+               i == 0       ? "  "
+               : i % 7 == 0 ? ",\n  "
+                            : ", ",
+               r->facts.fact[i].name, r->facts.fact[i].value < 100.0 && r->facts.fact[i].unit[0] ? 1 : 0,
+               r->facts.fact[i].value, r->facts.fact[i].unit);
+    if (r->facts.count > 0)
+        printf("\n");
 }
 
 static void print_json(const settings *set, const report *reports, int count)
@@ -282,7 +317,11 @@ static void print_json(const settings *set, const report *reports, int count)
         for (int k = 0; k < ratios; k++)
             printf("%s{\"name\": \"%s\", \"median\": %.4f, \"best\": %.4f, \"goal\": %.2f}",
                    k ? ", " : ", \"ratios\": [", list[k].name, list[k].median, list[k].best, list[k].goal);
-        printf(ratios ? "]}" : "}");
+        if (ratios)
+            printf("]");
+        for (int k = 0; k < r->facts.count; k++)
+            printf("%s\"%s\": %.6g", k ? ", " : ", \"facts\": {", r->facts.fact[k].name, r->facts.fact[k].value);
+        printf(r->facts.count ? "}}" : "}");
     }
     printf("\n  ]\n}\n");
 }

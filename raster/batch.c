@@ -2,6 +2,7 @@
  * through the geometry stages, one chunk a job, and then over the tiles, one tile a job. Each tile plays the chunks in
  * order, so primitive order is kept however jobs are spread over threads. */
 #include "core/dispatch.h"
+#include "raster/clock.h"
 #include "raster/internal.h"
 
 #include <stdlib.h>
@@ -94,7 +95,10 @@ static void chunk_job(void *user, int index, int thread)
     raster_scratch *scratch = &pass->scratch[thread];
     if (chunk->count == 0)
         return;
+    const bool timed = pass->target.time_stages;
+    uint64_t lap = raster_start(timed);
     raster_collect(chunk, scratch);
+    lap = raster_lap(timed, &scratch->stats, AMB_STAGE_CORNERS, lap);
     if (!raster_reserve_vertices(chunk, (size_t)scratch->unique_count + 16) ||
         !raster_reserve_triangles(chunk, (size_t)scratch->corner_count + 16)) {
         scratch->failed = true;
@@ -102,8 +106,11 @@ static void chunk_job(void *user, int index, int thread)
     }
     amb_isa isa = amb_context_isa(pass->context);
     AMB_DISPATCH(isa, raster_vertices)(pass, chunk, scratch);
+    lap = raster_lap(timed, &scratch->stats, AMB_STAGE_VERTICES, lap);
     AMB_DISPATCH(isa, raster_setup)(pass, chunk, scratch);
+    lap = raster_lap(timed, &scratch->stats, AMB_STAGE_SETUP, lap);
     raster_bin(pass, chunk, scratch);
+    raster_lap(timed, &scratch->stats, AMB_STAGE_BINS, lap);
 }
 
 static bool tile_is_touched(const amb_pass *pass, int tile)
@@ -243,7 +250,16 @@ static void sum_stats(const amb_pass *pass, amb_pass_stats *sum)
         sum->triangles_binned += s->triangles_binned;
         sum->blocks_shaded += s->blocks_shaded;
         sum->fragments_shaded += s->fragments_shaded;
+        for (int k = 0; k < AMB_STAGES; k++)
+            sum->ticks[k] += s->ticks[k];
     }
+}
+
+const char *amb_stage_name(amb_stage stage)
+{
+    static const char *const names[AMB_STAGES] = {"corners", "vertices", "set-up",    "bins",
+                                                  "tiles",   "coverage", "fragments", "output"};
+    return stage >= 0 && stage < AMB_STAGES ? names[stage] : "unknown";
 }
 
 amb_status amb_pass_finish(amb_pass **pass, amb_pass_stats *stats, amb_error *error)

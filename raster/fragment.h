@@ -7,6 +7,7 @@
 #ifndef AMBIANCE_RASTER_FRAGMENT_H
 #define AMBIANCE_RASTER_FRAGMENT_H
 
+#include "raster/clock.h"
 #include "raster/output.h"
 
 /* What shading needs of a triangle; rebuilt per tile, the same numbers in each, and only when a block is covered. */
@@ -91,7 +92,10 @@ static inline void run_shader(const raster_tile *tile, const amb_draw *draw, con
     out->color[0] = out->color[1] = (v4x){0}; /* also a second source of blending, or an alpha that means coverage */
     for (int i = 2; i < tile->pass->target_count; i++)
         out->color[i] = (v4x){0};
+    const bool timed = tile->pass->target.time_stages;
+    const uint64_t start = raster_start(timed);
     draw->fragment(in, out);
+    raster_lap(timed, tile->stats, AMB_STAGE_FRAGMENTS, start);
     out->live &= in->live;
     if (draw->writes_depth)
         out->depth = f_saturate(out->depth);
@@ -108,6 +112,8 @@ static inline void shade_group(const raster_tile *tile, const amb_draw *draw, co
     amb_fs_out out;
     run_shader(tile, draw, in, &out);
     maskx live = out.live;
+    const bool timed = tile->pass->target.time_stages;
+    const uint64_t start = raster_start(timed);
     if (draw->alpha_to_coverage)
         live &= out.color[0].w >= 0.5f;
     if (late || draw->stencil.on)
@@ -116,6 +122,7 @@ static inline void shade_group(const raster_tile *tile, const amb_draw *draw, co
         store_plane(at, 0, out.depth, live, packed);
     if (m_any(live))
         store_colors(tile, draw, at, 0, &out, live, packed);
+    raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
 }
 
 /* Gives the covered lanes of a block, minus those that fail an early test. */
@@ -310,6 +317,8 @@ static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, 
     const int samples = tile->pass->samples;
     amb_fs_out out;
     run_shader(tile, draw, in, &out);
+    const bool timed = tile->pass->target.time_stages;
+    const uint64_t start = raster_start(timed);
     for (int i = 0; i < samples; i++) {
         maskx written = live[i] & out.live;
         if (draw->alpha_to_coverage)
@@ -322,6 +331,7 @@ static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, 
         if (m_any(written))
             store_colors(tile, draw, at, base, &out, written, false);
     }
+    raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
 }
 
 /* A block of which samples are covered. e: the edge functions at the pixels' centres. */

@@ -248,12 +248,16 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     tile.right = pass->width - tile.x0 < pass->tile_size ? pass->width - tile.x0 : pass->tile_size;
     tile.bottom = pass->height - tile.y0 < pass->tile_size ? pass->height - tile.y0 : pass->tile_size;
     const size_t bytes = raster_tile_floats(pass) * sizeof(float);
+    const bool timed = pass->target.time_stages;
+    uint64_t lap = raster_start(timed);
     if (pass->samples > 1 && pass->tile_store[number]) {
         memcpy(tile.data, pass->tile_store[number], bytes);
     } else {
         load_tile(&tile, pass->target.keep || pass->tile_started[number]);
         spread_samples(&tile);
     }
+    lap = raster_lap(timed, tile.stats, AMB_STAGE_TILES, lap);
+    const uint64_t nested = tile.stats->ticks[AMB_STAGE_FRAGMENTS] + tile.stats->ticks[AMB_STAGE_OUTPUT];
     for (size_t i = 0; i < pass->chunk_count;) {
         size_t screens = 0;
         while (i + screens < pass->chunk_count && pass->chunk[i + screens].count == 0)
@@ -267,6 +271,9 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
         i += screens > 0 ? screens : 1;
     }
     flush_queue(&tile, &queue);
+    lap = raster_lap(timed, tile.stats, AMB_STAGE_COVERAGE, lap);
+    tile.stats->ticks[AMB_STAGE_COVERAGE] -=
+        tile.stats->ticks[AMB_STAGE_FRAGMENTS] + tile.stats->ticks[AMB_STAGE_OUTPUT] - nested;
     if (pass->samples > 1 && !pass->last_batch) { /* the samples must last until it */
         if (!pass->tile_store[number])
             pass->tile_store[number] = malloc(bytes);
@@ -279,4 +286,5 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     if (pass->samples > 1)
         resolve_samples(&tile);
     store_tile(&tile);
+    raster_lap(timed, tile.stats, AMB_STAGE_TILES, lap);
 }

@@ -179,9 +179,25 @@ typedef struct amb_target {
      * pixels; shaders run once a pixel, at its centre; depth, stencil and blending work on samples. At the end colours
      * are averaged, depth and stencil are those of sample 0. */
     int samples;
+    bool time_stages; /* fill amb_pass_stats.ticks: costs some 3 % */
 } amb_target;
 
-/* Counts of a pass, the same at any thread count. "triangles" are the primitives, lines and points too. */
+/* Where a pass spends its time. */
+typedef enum amb_stage {
+    AMB_STAGE_CORNERS,  /* gathering indices */
+    AMB_STAGE_VERTICES, /* vertex shader and what takes its results to the window */
+    AMB_STAGE_SETUP,    /* culling, clipping, bounds */
+    AMB_STAGE_BINS,
+    AMB_STAGE_TILES,     /* tiles from and to images */
+    AMB_STAGE_COVERAGE,  /* edges, early tests, interpolation, packing */
+    AMB_STAGE_FRAGMENTS, /* fragment shader */
+    AMB_STAGE_OUTPUT,    /* late tests, blending, stores */
+    AMB_STAGES
+} amb_stage;
+const char *amb_stage_name(amb_stage stage);
+
+/* Counts of a pass, all but the ticks the same at any thread count. "triangles" are the primitives, lines and points
+ * too. */
 typedef struct amb_pass_stats {
     uint64_t vertices; /* vertex shader lanes alive */
     uint64_t triangles_in;
@@ -190,6 +206,7 @@ typedef struct amb_pass_stats {
     uint64_t triangles_binned;  /* what was left, pieces of clipped ones counted each */
     uint64_t blocks_shaded;     /* fragment shader calls: depends on the lanes */
     uint64_t fragments_shaded;  /* live lanes of those calls */
+    uint64_t ticks[AMB_STAGES]; /* of the processor's time stamp counter, summed over threads; 0 unless time_stages */
 } amb_pass_stats;
 
 typedef struct amb_pass amb_pass;
