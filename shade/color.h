@@ -49,6 +49,18 @@ AMB_INLINE v3x color_xyz_of_xyy(f32x x, f32x y, f32x luminance)
     return (v3x){x * s, luminance, (1.0f - x - y) * s};
 }
 
+/* The nearest colour towards grey of the same luminance that has no negative channel; black where the luminance is not
+ * above 0. For colours outside the Rec. 709 triangle. */
+AMB_INLINE v3x color_clip_negative(v3x rgb)
+{
+    f32x zero = f_set(0.0f), grey = f_max(color_luminance(rgb), zero);
+    f32x least = f_min(f_min(rgb.x, rgb.y), f_min(rgb.z, zero));
+    f32x keep =
+        f_sel(least < 0.0f, grey / f_max(grey - least, f_set(FLT_MIN)), f_set(1.0f)); /* grey + keep·least' = 0 */
+    return (v3x){f_max(grey + (rgb.x - grey) * keep, zero), f_max(grey + (rgb.y - grey) * keep, zero),
+                 f_max(grey + (rgb.z - grey) * keep, zero)};
+}
+
 AMB_INLINE f32x color_lab_curve_(f32x t)
 {
     return f_sel(t > 216.0f / 24389.0f, f_cbrt(t), (t * (24389.0f / 27.0f) + 16.0f) * (1.0f / 116.0f));

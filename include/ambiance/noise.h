@@ -68,6 +68,22 @@ AMB_INLINE f32x noise_component_(u32x hash, int first, int bits)
 
 /* ---- value noise ------------------------------------------------------------------------------------------------- */
 
+/* The quintic surface over a cell with the values a, b (one cell along x), c (along y), d (both) at its corners:
+ * a + (b-a)u + (c-a)v + (a-b-c+d)uv, u and v being the fades. */
+AMB_INLINE noise2x noise_surface_(f32x a, f32x b, f32x c, f32x d, const noise_axis_ *x, const noise_axis_ *y)
+{
+    f32x along_x = b - a, along_y = c - a, both = (a - b) + (d - c);
+    f32x rise_x = along_x + both * y->q, rise_y = along_y + both * x->q;
+    noise2x n;
+    n.value = a + along_x * x->q + rise_y * y->q;
+    n.slope.x = x->dq * rise_x;
+    n.slope.y = y->dq * rise_y;
+    n.xx = x->ddq * rise_x;
+    n.xy = x->dq * y->dq * both;
+    n.yy = y->ddq * rise_y;
+    return n;
+}
+
 /* In [-1, 1]. All derivatives, second ones too. */
 AMB_INLINE noise2x noise_value2(v2x p, amb_lattice lattice)
 {
@@ -75,15 +91,7 @@ AMB_INLINE noise2x noise_value2(v2x p, amb_lattice lattice)
     u32x row0 = u_hash(y.cell + lattice.seed), row1 = u_hash(y.cell + 1u + lattice.seed);
     f32x a = noise_signed_(u_hash(x.cell + row0)), b = noise_signed_(u_hash(x.cell + 1u + row0));
     f32x c = noise_signed_(u_hash(x.cell + row1)), d = noise_signed_(u_hash(x.cell + 1u + row1));
-    f32x along_x = b - a, along_y = c - a, both = (a - b) + (d - c);
-    noise2x n;
-    n.value = a + along_x * x.q + (along_y + both * x.q) * y.q;
-    n.slope.x = x.dq * (along_x + both * y.q);
-    n.slope.y = y.dq * (along_y + both * x.q);
-    n.xx = x.ddq * (along_x + both * y.q);
-    n.xy = x.dq * y.dq * both;
-    n.yy = y.ddq * (along_y + both * x.q);
-    return n;
+    return noise_surface_(a, b, c, d, &x, &y);
 }
 
 /* In [-1, 1]. */
