@@ -124,8 +124,8 @@ static int show_picture(const char *path, const char *kind, json_t **json)
 static int show_texture(const char *path, const char *kind, json_t **json)
 {
     static const char *const kinds[] = {"2D", "cube map", "3D"};
-    static const char *const texels[] = {"R8",      "RG8",  "RGBA8",   "sRGB8 A8",  "R16F",
-                                         "RGBA16F", "R32F", "RGBA32F", "R11G11B10F"};
+    static const char *const texels[] = {"R8",   "RG8",     "RGBA8",      "sRGB8 A8", "R16F", "RGBA16F",
+                                         "R32F", "RGBA32F", "R11G11B10F", "RG16F",    "RG32F"};
     amb_error error;
     amb_texture *texture;
     if (amb_read_texture(path, false, &texture, &error) != AMB_OK)

@@ -40,7 +40,7 @@ static amb_status check_desc(const amb_texture_desc *d, amb_texture_info *info, 
                         (int)d->kind);
     if (!texel_bytes(d->texel))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: texel format %d is unknown; allowed are 0 to %d",
-                        (int)d->texel, (int)AMB_TEXEL_R11G11B10F);
+                        (int)d->texel, (int)AMB_TEXEL_LAST);
     *info = (amb_texture_info){d->kind, d->texel, d->width, d->height, 1, 0};
     if (d->kind == AMB_TEXTURE_3D || d->kind == AMB_TEXTURE_2D_ARRAY)
         info->depth = d->depth;
@@ -60,8 +60,12 @@ static amb_status check_desc(const amb_texture_desc *d, amb_texture_info *info, 
         return amb_fail(error, AMB_ERROR_ARGUMENT,
                         "texture: levels is %d; a %s texture of this size has 1 to %d (0 means 1)", d->levels,
                         kind_name(d->kind), most);
+    if (!d->data && d->data_bytes == 0)
+        return AMB_OK;
     if (!d->data)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: data is NULL; it must point to the texels");
+        return amb_fail(error, AMB_ERROR_ARGUMENT,
+                        "texture: data is NULL; it must point to %zu bytes of texels, or data_bytes be 0",
+                        d->data_bytes);
 
     size_t bytes = 0; /* at most 2^15 cubed · 16 · 2: no overflow */
     for (int l = 0; l < info->levels; l++)
@@ -100,7 +104,7 @@ static amb_status lay_out(amb_texture *t, amb_error *error)
     return AMB_OK;
 }
 
-static void store_levels(amb_texture *t, const amb_texture_desc *desc, int given)
+static void store_levels(amb_texture *t, const char *from, int given)
 {
     uint16_t linear_of_code[256] = {0};
     if (t->info.texel == AMB_TEXEL_SRGB8_A8) {
@@ -109,7 +113,6 @@ static void store_levels(amb_texture *t, const amb_texture_desc *desc, int given
         for (int c = 0; c < 256; c++)
             linear_of_code[c] = (uint16_t)f_to_half(linear[c]);
     }
-    const char *from = desc->data;
     for (int l = 0; l < given; l++) {
         int width = level_size(t->info.width, l), height = level_size(t->info.height, l);
         for (int z = 0; z < level_slices(&t->info, l); z++)
@@ -118,6 +121,18 @@ static void store_levels(amb_texture *t, const amb_texture_desc *desc, int given
                 from += (size_t)width * texel_bytes(t->info.texel);
             }
     }
+}
+
+/* Every level as if its data were all zero: absent channels still read 0, absent alpha 1. */
+static void store_zeros(amb_texture *t)
+{
+    const unsigned char zero[16] = {0};
+    const uint16_t linear_of_code[256] = {0};
+    uint32_t words[4];
+    texels_store(t->info.texel, linear_of_code, zero, 1, words);
+    const size_t texel_words = (size_t)storage_words(t->storage);
+    for (size_t i = 0; i < t->words; i += texel_words)
+        memcpy(t->data + i, words, texel_words * sizeof *words);
 }
 
 amb_status amb_texture_create(const amb_texture_desc *desc, amb_texture **out, amb_error *error)
@@ -149,11 +164,16 @@ amb_status amb_texture_create(const amb_texture_desc *desc, amb_texture **out, a
         goto error;
     }
     memset(t->data + t->words, 0, bytes - t->words * sizeof(uint32_t));
-    store_levels(t, desc, given);
-    status = texture_make_mips(t, given, error);
-    if (status)
-        goto error;
-    texture_pad(t);
+    if (desc->data) {
+        store_levels(t, desc->data, given);
+        status = texture_make_mips(t, given, error);
+        if (status)
+            goto error;
+        for (int l = 0; l < t->info.levels; l++)
+            texture_pad(t, l);
+    } else {
+        store_zeros(t);
+    }
     *out = t;
     return AMB_OK;
 error:
@@ -171,6 +191,16 @@ void amb_texture_close(amb_texture **texture)
 }
 
 amb_texture_info amb_texture_describe(const amb_texture *texture) { return texture->info; }
+
+amb_status amb_texture_make_mips(amb_texture *texture, amb_error *error)
+{
+    if (!texture)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: none is given to make the levels of");
+    amb_status status = texture_make_mips(texture, 1, error);
+    for (int l = 1; l < texture->info.levels && status == AMB_OK; l++)
+        texture_pad(texture, l);
+    return status;
+}
 
 /* ---- from images ------------------------------------------------------------------------------------------------ */
 
@@ -210,7 +240,7 @@ static amb_status create_from_images(amb_image *const *images, int count, amb_te
 {
     if (!texel_bytes(texel))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: texel format %d is unknown; allowed are 0 to %d",
-                        (int)texel, (int)AMB_TEXEL_R11G11B10F);
+                        (int)texel, (int)AMB_TEXEL_LAST);
     amb_status status = AMB_OK;
     int width = images[0]->width, height = images[0]->height;
     size_t bytes = (size_t)width * (size_t)height * (size_t)count * texel_bytes(texel);
@@ -266,4 +296,44 @@ amb_status amb_texture_cube_from_images(amb_image *const faces[6], amb_texel tex
                             faces[i]->width, faces[i]->height, faces[0]->width, faces[0]->width);
     }
     return create_from_images(faces, 6, AMB_TEXTURE_CUBE, texel, make_mips, out, error);
+}
+
+/* ---- to images -------------------------------------------------------------------------------------------------- */
+
+static void unpack_row(const amb_texture *t, const float *linear, const float *edges, const uint32_t *from, v4 *row,
+                       int width)
+{
+    texels_decode(t->storage, from, width, row);
+    if (t->info.texel != AMB_TEXEL_SRGB8_A8)
+        return;
+    for (int x = 0; x < width; x++) /* storage is a little off the codes */
+        row[x] = v4_of(linear[srgb_code(edges, row[x].x)], linear[srgb_code(edges, row[x].y)],
+                       linear[srgb_code(edges, row[x].z)], f_floor(row[x].w * 255.0f + 0.5f) / 255.0f);
+}
+
+amb_status amb_texture_to_image(const amb_texture *t, int level, int slice, amb_image **out, amb_error *error)
+{
+    if (!t || !out)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: %s is NULL", t ? "out" : "the texture to copy");
+    *out = NULL;
+    if (level < 0 || level >= t->info.levels)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: level is %d; this one has 0 to %d", level,
+                        t->info.levels - 1);
+    if (slice < 0 || slice >= level_slices(&t->info, level))
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: slice is %d; level %d of this one has 0 to %d", slice,
+                        level, level_slices(&t->info, level) - 1);
+    int width = level_size(t->info.width, level), height = level_size(t->info.height, level);
+    v4 *row = malloc((size_t)width * sizeof *row);
+    amb_status status = row ? amb_image_create(width, height, texel_channels(t->info.texel), out, error)
+                            : amb_fail(error, AMB_ERROR_MEMORY, "texture: no memory");
+    float linear[256], edges[256];
+    srgb_tables(linear, edges);
+    for (int y = 0; y < height && status == AMB_OK; y++) {
+        unpack_row(t, linear, edges, texel_at(t, level, 0, y, slice), row, width);
+        for (int c = 0; c < (*out)->channels; c++)
+            for (int x = 0; x < width; x++)
+                amb_image_row(*out, c, y)[x] = (&row[x].x)[c];
+    }
+    free(row);
+    return status;
 }

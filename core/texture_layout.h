@@ -13,9 +13,10 @@
 
 typedef enum texture_storage {
     STORE_UNORM8, /* one word, r g b a from the low byte: R8, RG8, RGBA8 */
-    STORE_HALF4,  /* two words of two halves: RGBA16F, R11G11B10F, and sRGB, decoded to linear (11 significant bits) */
+    STORE_HALF4,  /* two words of two halves: RG16F, RGBA16F, R11G11B10F, and sRGB, decoded to linear (11 significant
+                     bits) */
     STORE_FLOAT1, /* one word: R16F, R32F */
-    STORE_FLOAT4, /* four words: RGBA32F */
+    STORE_FLOAT4, /* four words: RG32F, RGBA32F */
 } texture_storage;
 
 AMB_INLINE int storage_words(texture_storage storage)
@@ -65,6 +66,7 @@ AMB_INLINE uint32_t *texel_at(const amb_texture *t, int level, int x, int y, int
 
 /* texture_texels.c: texels in and out of storage. */
 size_t texel_bytes(amb_texel texel); /* of one texel in a description's data; 0 for an unknown format */
+int texel_channels(amb_texel texel);
 texture_storage texel_storage(amb_texel texel);
 /* Converts `count` packed texels of the description's format into storage. linear_of_code: 256 halves, for sRGB. */
 void texels_store(amb_texel texel, const uint16_t *linear_of_code, const void *source, int count, uint32_t *to);
@@ -72,11 +74,13 @@ void texels_decode(texture_storage storage, const uint32_t *from, int count, v4 
 void texels_encode(texture_storage storage, const v4 *from, int count, uint32_t *to);
 /* Packs linear colours into a description's format; halves saturate at ±65504. `count` texels of texel_bytes each. */
 void texels_pack(amb_texel texel, const float *linear_edges, const v4 *from, int count, void *to);
+/* The nearest sRGB code. NaN gives 0. */
+uint32_t srgb_code(const float linear_edges[256], float linear);
 /* linear[c]: what sRGB code c means; edges[c]: the linear value between codes c and c + 1 (c < 255). */
 void srgb_tables(float linear[256], float edges[256]);
 
 /* texture_mips.c */
 amb_status texture_make_mips(amb_texture *texture, int first, amb_error *error); /* levels first … levels-1 */
-void texture_pad(amb_texture *texture);                                          /* borders of every level */
+void texture_pad(amb_texture *texture, int level);                               /* its borders */
 
 #endif

@@ -175,16 +175,30 @@ static void pad_corner(amb_texture *t, int level, int face, int x, int y)
     texels_encode(t->storage, &average, 1, texel_at(t, level, x, y, face));
 }
 
+/* The border texels along one edge of a face, n from (x, y) in direction (dx, dy): their neighbours lie in a row too.
+ */
+static void pad_edge(amb_texture *t, int level, int face, int x, int y, int dx, int dy)
+{
+    int n = level_size(t->info.width, level);
+    uint32_t *to = texel_at(t, level, x, y, face);
+    const uint32_t *from = neighbour_texel(t, level, face, x, y);
+    copy_texel(t, to, from);
+    if (n < 2)
+        return;
+    ptrdiff_t step_to = texel_at(t, level, x + dx, y + dy, face) - to;
+    ptrdiff_t step_from = neighbour_texel(t, level, face, x + dx, y + dy) - from;
+    for (int i = 1; i < n; i++)
+        copy_texel(t, to + i * step_to, from + i * step_from);
+}
+
 static void pad_cube(amb_texture *t, int level)
 {
     int n = level_size(t->info.width, level);
     for (int face = 0; face < 6; face++) {
-        for (int i = 0; i < n; i++) {
-            copy_texel(t, texel_at(t, level, -1, i, face), neighbour_texel(t, level, face, -1, i));
-            copy_texel(t, texel_at(t, level, n, i, face), neighbour_texel(t, level, face, n, i));
-            copy_texel(t, texel_at(t, level, i, -1, face), neighbour_texel(t, level, face, i, -1));
-            copy_texel(t, texel_at(t, level, i, n, face), neighbour_texel(t, level, face, i, n));
-        }
+        pad_edge(t, level, face, -1, 0, 0, 1);
+        pad_edge(t, level, face, n, 0, 0, 1);
+        pad_edge(t, level, face, 0, -1, 1, 0);
+        pad_edge(t, level, face, 0, n, 1, 0);
         pad_corner(t, level, face, -1, -1);
         pad_corner(t, level, face, n, -1);
         pad_corner(t, level, face, -1, n);
@@ -192,12 +206,10 @@ static void pad_cube(amb_texture *t, int level)
     }
 }
 
-void texture_pad(amb_texture *t)
+void texture_pad(amb_texture *t, int level)
 {
-    for (int level = 0; level < t->info.levels; level++) {
-        if (t->info.kind == AMB_TEXTURE_CUBE)
-            pad_cube(t, level);
-        else
-            pad_repeat(t, level);
-    }
+    if (t->info.kind == AMB_TEXTURE_CUBE)
+        pad_cube(t, level);
+    else
+        pad_repeat(t, level);
 }

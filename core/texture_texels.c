@@ -15,13 +15,37 @@ size_t texel_bytes(amb_texel texel)
     case AMB_TEXEL_SRGB8_A8:
     case AMB_TEXEL_R32F:
     case AMB_TEXEL_R11G11B10F:
+    case AMB_TEXEL_RG16F:
         return 4;
     case AMB_TEXEL_RGBA16F:
+    case AMB_TEXEL_RG32F:
         return 8;
     case AMB_TEXEL_RGBA32F:
         return 16;
     }
     return 0;
+}
+
+int texel_channels(amb_texel texel)
+{
+    switch (texel) {
+    case AMB_TEXEL_R8:
+    case AMB_TEXEL_R16F:
+    case AMB_TEXEL_R32F:
+        return 1;
+    case AMB_TEXEL_RG8:
+    case AMB_TEXEL_RG16F:
+    case AMB_TEXEL_RG32F:
+        return 2;
+    case AMB_TEXEL_R11G11B10F:
+        return 3;
+    case AMB_TEXEL_RGBA8:
+    case AMB_TEXEL_SRGB8_A8:
+    case AMB_TEXEL_RGBA16F:
+    case AMB_TEXEL_RGBA32F:
+        break;
+    }
+    return 4;
 }
 
 texture_storage texel_storage(amb_texel texel)
@@ -34,9 +58,11 @@ texture_storage texel_storage(amb_texel texel)
     case AMB_TEXEL_R16F:
     case AMB_TEXEL_R32F:
         return STORE_FLOAT1;
+    case AMB_TEXEL_RG32F:
     case AMB_TEXEL_RGBA32F:
         return STORE_FLOAT4;
     case AMB_TEXEL_SRGB8_A8:
+    case AMB_TEXEL_RG16F:
     case AMB_TEXEL_RGBA16F:
     case AMB_TEXEL_R11G11B10F:
         break;
@@ -73,8 +99,8 @@ void srgb_tables(float linear[256], float edges[256])
     }
 }
 
-/* The number of edges at or below the value: the nearest code. NaN gives 0. */
-static uint32_t srgb_code(const float *edges, float linear)
+/* The number of edges at or below the value. */
+uint32_t srgb_code(const float *edges, float linear)
 {
     uint32_t code = 0;
     for (uint32_t step = 128; step; step /= 2)
@@ -136,9 +162,19 @@ void texels_store(amb_texel texel, const uint16_t *linear_of_code, const void *s
         case AMB_TEXEL_R32F:
             *to++ = read32(p);
             break;
+        case AMB_TEXEL_RG16F:
+            *to++ = read32(p);
+            *to++ = 0x3c00u << 16;
+            break;
         case AMB_TEXEL_RGBA16F:
             *to++ = read32(p);
             *to++ = read32(p + 4);
+            break;
+        case AMB_TEXEL_RG32F:
+            *to++ = read32(p);
+            *to++ = read32(p + 4);
+            *to++ = 0;
+            *to++ = float_word(1.0f);
             break;
         case AMB_TEXEL_RGBA32F:
             for (int c = 0; c < 4; c++)
@@ -233,11 +269,13 @@ void texels_pack(amb_texel texel, const float *linear_edges, const v4 *from, int
         case AMB_TEXEL_R16F:
             word[0] = saturated_half(c.x);
             break;
+        case AMB_TEXEL_RG16F:
         case AMB_TEXEL_RGBA16F:
             word[0] = saturated_half(c.x) | saturated_half(c.y) << 16;
             word[1] = saturated_half(c.z) | saturated_half(c.w) << 16;
             break;
         case AMB_TEXEL_R32F:
+        case AMB_TEXEL_RG32F:
         case AMB_TEXEL_RGBA32F:
             texels_encode(STORE_FLOAT4, &c, 1, word);
             break;

@@ -30,12 +30,12 @@ static void random_texel(amb_texel texel, uint32_t *state, unsigned char *to)
 {
     for (int i = 0; i < ref_texel_bytes(texel); i++)
         to[i] = (unsigned char)(next_random(state) >> 8);
-    if (texel == AMB_TEXEL_R16F || texel == AMB_TEXEL_RGBA16F) {
+    if (texel == AMB_TEXEL_R16F || texel == AMB_TEXEL_RG16F || texel == AMB_TEXEL_RGBA16F) {
         for (int i = 0; i < ref_texel_bytes(texel); i += 2) {
             unsigned half = next_random(state) % 0x3c01;
             to[i] = (unsigned char)half, to[i + 1] = (unsigned char)(half >> 8);
         }
-    } else if (texel == AMB_TEXEL_R32F || texel == AMB_TEXEL_RGBA32F) {
+    } else if (texel == AMB_TEXEL_R32F || texel == AMB_TEXEL_RG32F || texel == AMB_TEXEL_RGBA32F) {
         for (int i = 0; i < ref_texel_bytes(texel); i += 4) {
             float value = (float)uniform(state, 0.0, 1.0);
             memcpy(to + i, &value, 4);
@@ -98,11 +98,13 @@ static double storage_bound(amb_texel texel, bool mips)
         return mips ? 0.5 / 255 + 1e-6 : 1e-6;
     case AMB_TEXEL_SRGB8_A8:
         return mips ? 2 * 0x1p-12 : 0x1p-12;
+    case AMB_TEXEL_RG16F:
     case AMB_TEXEL_RGBA16F:
     case AMB_TEXEL_R11G11B10F:
         return mips ? 0x1p-12 : 1e-7;
     case AMB_TEXEL_R16F:
     case AMB_TEXEL_R32F:
+    case AMB_TEXEL_RG32F:
     case AMB_TEXEL_RGBA32F:
         break;
     }
@@ -204,9 +206,9 @@ static amb_sampler random_sampler(uint32_t *state)
 
 /* ---- sampling --------------------------------------------------------------------------------------------------- */
 
-static const amb_texel every_texel[] = {AMB_TEXEL_R8,       AMB_TEXEL_RG8,     AMB_TEXEL_RGBA8,
-                                        AMB_TEXEL_SRGB8_A8, AMB_TEXEL_R16F,    AMB_TEXEL_RGBA16F,
-                                        AMB_TEXEL_R32F,     AMB_TEXEL_RGBA32F, AMB_TEXEL_R11G11B10F};
+static const amb_texel every_texel[] = {AMB_TEXEL_R8,         AMB_TEXEL_RG8,     AMB_TEXEL_RGBA8, AMB_TEXEL_SRGB8_A8,
+                                        AMB_TEXEL_R16F,       AMB_TEXEL_RGBA16F, AMB_TEXEL_R32F,  AMB_TEXEL_RGBA32F,
+                                        AMB_TEXEL_R11G11B10F, AMB_TEXEL_RG16F,   AMB_TEXEL_RG32F};
 enum { TEXELS = sizeof every_texel / sizeof every_texel[0] };
 
 /* Coordinate rounding: 2⁻²³ of a size of 32 on three axes and |uv| ≤ 3.5 stays below 2e-5 of the contrast. */
@@ -554,7 +556,8 @@ static void test_from_image_round_trips(void **unused)
     (void)unused;
     amb_image *image = NULL;
     assert_int_equal(amb_image_create(16, 16, 3, &image, NULL), AMB_OK);
-    static const double bound[TEXELS] = {0.5 / 255, 0.5 / 255, 0.5 / 255, 0.0045, 0x1p-12, 0x1p-12, 0, 0, 0x1p-6};
+    static const double bound[TEXELS] = {0.5 / 255, 0.5 / 255, 0.5 / 255, 0.0045,  0x1p-12, 0x1p-12,
+                                         0,         0,         0x1p-6,    0x1p-12, 0};
     for (int y = 0; y < 16; y++)
         for (int x = 0; x < 16; x++)
             for (int c = 0; c < 3; c++)

@@ -30,7 +30,7 @@ static double srgb(unsigned code)
 
 int ref_texel_bytes(amb_texel texel)
 {
-    static const int bytes[] = {1, 2, 4, 4, 2, 8, 4, 16, 4};
+    static const int bytes[] = {1, 2, 4, 4, 2, 8, 4, 16, 4, 4, 8};
     return bytes[texel];
 }
 
@@ -65,6 +65,14 @@ ref_color ref_decode(amb_texel texel, const unsigned char *b)
         break;
     case AMB_TEXEL_R16F:
         r.c[0] = ref_half(pair_of(b));
+        break;
+    case AMB_TEXEL_RG16F:
+        r.c[0] = ref_half(pair_of(b));
+        r.c[1] = ref_half(pair_of(b + 2));
+        break;
+    case AMB_TEXEL_RG32F:
+        r.c[0] = float_of(b);
+        r.c[1] = float_of(b + 4);
         break;
     case AMB_TEXEL_RGBA16F:
         for (int k = 0; k < 4; k++)

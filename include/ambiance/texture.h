@@ -1,4 +1,5 @@
-/* Textures and samplers. A texture is immutable once made; sampling may be called from any thread.
+/* Textures and samplers. A texture changes only as a pass's target (raster.h) and by amb_texture_make_mips; sampling
+ * may be called from any thread, but not of a texture that is being changed.
  *
  * Sampling follows the GL/D3D formulas (texel centres at .5, LOD from screen derivatives), with weights in full float
  * precision where a GPU has 8 bits. The lanes form is compiled once per instruction set. NaN or infinite coordinates
@@ -26,7 +27,10 @@ typedef enum amb_texel {
     AMB_TEXEL_R32F,
     AMB_TEXEL_RGBA32F,
     AMB_TEXEL_R11G11B10F,
+    AMB_TEXEL_RG16F,
+    AMB_TEXEL_RG32F,
 } amb_texel; /* absent channels read 0, absent alpha 1 */
+#define AMB_TEXEL_LAST AMB_TEXEL_RG32F
 
 #define AMB_MAX_TEXTURE_SIZE 32768
 #define AMB_MAX_TEXTURE_LEVELS 16
@@ -40,9 +44,9 @@ typedef struct amb_texture_desc {
     int levels;               /* levels given in `data`, each half the one before; 0 means 1 */
     bool make_mips;           /* complete the chain below the given levels with a box filter in linear light */
     /* Level by level; in a level layers, cube faces +x -x +y -y +z -z (D3D order and orientation) or slices, rows from
-     * the top, texels; tightly packed. Copied. */
+     * the top, texels; tightly packed. Copied. NULL: all zero, to be rendered into. */
     const void *data;
-    size_t data_bytes; /* must match exactly */
+    size_t data_bytes; /* must match exactly; 0 for NULL */
 } amb_texture_desc;
 
 /* Errors: ARGUMENT, LIMIT, MEMORY. */
@@ -54,6 +58,11 @@ amb_status amb_texture_from_image(const amb_image *image, amb_texel texel, bool 
 amb_status amb_texture_cube_from_images(amb_image *const faces[6], amb_texel texel, bool make_mips, amb_texture **out,
                                         amb_error *error);
 void amb_texture_close(amb_texture **texture); /* frees and nulls */
+/* Makes every level below the first anew from it, as make_mips does. Errors: MEMORY (levels are then as they were). */
+amb_status amb_texture_make_mips(amb_texture *texture, amb_error *error);
+/* A layer, face or slice of a level as an image of the format's channels; sRGB as the linear values of its codes.
+ * Errors: ARGUMENT, LIMIT, MEMORY. */
+amb_status amb_texture_to_image(const amb_texture *texture, int level, int slice, amb_image **out, amb_error *error);
 
 typedef struct amb_texture_info {
     amb_texture_kind kind;
