@@ -300,15 +300,21 @@ amb_status amb_texture_cube_from_images(amb_image *const faces[6], amb_texel tex
 
 /* ---- to images -------------------------------------------------------------------------------------------------- */
 
+/* n/255 of the code n that a value is nearest to. */
+static float nearest_unorm8(float value) { return f_floor(value * 255.0f + 0.5f) / 255.0f; }
+
 static void unpack_row(const amb_texture *t, const float *linear, const float *edges, const uint32_t *from, v4 *row,
                        int width)
 {
     texels_decode(t->storage, from, width, row);
-    if (t->info.texel != AMB_TEXEL_SRGB8_A8)
-        return;
-    for (int x = 0; x < width; x++) /* storage is a little off the codes */
-        row[x] = v4_of(linear[srgb_code(edges, row[x].x)], linear[srgb_code(edges, row[x].y)],
-                       linear[srgb_code(edges, row[x].z)], f_floor(row[x].w * 255.0f + 0.5f) / 255.0f);
+    for (int x = 0; x < width; x++) {
+        v4 c = row[x];
+        if (t->info.texel == AMB_TEXEL_SRGB8_A8) /* storage is a little off the codes */
+            row[x] = v4_of(linear[srgb_code(edges, c.x)], linear[srgb_code(edges, c.y)], linear[srgb_code(edges, c.z)],
+                           nearest_unorm8(c.w));
+        else if (t->storage == STORE_UNORM8)
+            row[x] = v4_of(nearest_unorm8(c.x), nearest_unorm8(c.y), nearest_unorm8(c.z), nearest_unorm8(c.w));
+    }
 }
 
 amb_status amb_texture_to_image(const amb_texture *t, int level, int slice, amb_image **out, amb_error *error)

@@ -76,7 +76,7 @@ void texels_encode(texture_storage storage, const v4 *from, int count, uint32_t 
 void texels_pack(amb_texel texel, const float *linear_edges, const v4 *from, int count, void *to);
 /* The nearest sRGB code. NaN gives 0. */
 uint32_t srgb_code(const float linear_edges[256], float linear);
-/* linear[c]: what sRGB code c means; edges[c]: the linear value between codes c and c + 1 (c < 255). */
+/* linear[c]: what sRGB code c means; edges[c]: where code c + 1 begins (c < 255). */
 void srgb_tables(float linear[256], float edges[256]);
 
 /* texture_mips.c */

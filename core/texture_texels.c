@@ -85,17 +85,28 @@ static double power_2_4(double x)
     return root;
 }
 
-static float srgb_decode(double code)
+static double srgb_decode(double code)
 {
     double c = code / 255.0;
-    return (float)(c <= 0.04045 ? c / 12.92 : power_2_4((c + 0.055) / 1.055));
+    return c <= 0.04045 ? c / 12.92 : power_2_4((c + 0.055) / 1.055);
+}
+
+/* The least float that is not below a positive value, so that floats compare with it as with the value itself. */
+static float least_float(double value)
+{
+    float nearest = (float)value;
+    uint32_t bits;
+    memcpy(&bits, &nearest, sizeof bits);
+    bits += (double)nearest < value;
+    memcpy(&nearest, &bits, sizeof bits);
+    return nearest;
 }
 
 void srgb_tables(float linear[256], float edges[256])
 {
     for (int c = 0; c < 256; c++) {
-        linear[c] = srgb_decode(c);
-        edges[c] = srgb_decode(c < 255 ? c + 0.5 : 255.0);
+        linear[c] = (float)srgb_decode(c);
+        edges[c] = least_float(srgb_decode(c < 255 ? c + 0.5 : 255.0));
     }
 }
 

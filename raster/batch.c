@@ -208,18 +208,6 @@ static bool run_draws(amb_pass *pass)
 
 /* ---- finish ----------------------------------------------------------------------------------------------------- */
 
-static void clear_image(const amb_pass *pass, const amb_image *image, int x0, int y0, const float *value)
-{
-    int x1 = x0 + pass->tile_size < pass->width ? x0 + pass->tile_size : pass->width;
-    int y1 = y0 + pass->tile_size < pass->height ? y0 + pass->tile_size : pass->height;
-    for (int c = 0; c < image->channels; c++)
-        for (int y = y0; y < y1; y++) {
-            float *row = amb_image_row(image, c, y);
-            for (int x = x0; x < x1; x++)
-                row[x] = value[c];
-        }
-}
-
 /* A tile no draw touched gets its clear values. */
 static void clear_job(void *user, int index, int thread)
 {
@@ -228,13 +216,12 @@ static void clear_job(void *user, int index, int thread)
     if (pass->tile_started[index])
         return;
     int x0 = index % pass->tiles_x * pass->tile_size, y0 = index / pass->tiles_x * pass->tile_size;
+    int x1 = x0 + pass->tile_size < pass->width ? x0 + pass->tile_size : pass->width;
+    int y1 = y0 + pass->tile_size < pass->height ? y0 + pass->tile_size : pass->height;
     for (int i = 0; i < pass->target_count; i++)
-        clear_image(pass, pass->target.color[i], x0, y0, &pass->target.clear_color[i].x);
-    if (pass->target.depth)
-        clear_image(pass, pass->target.depth, x0, y0, &pass->target.clear_depth);
-    const float stencil = (float)pass->target.clear_stencil;
-    if (pass->target.stencil)
-        clear_image(pass, pass->target.stencil, x0, y0, &stencil);
+        raster_clear_pixels(&pass->color[i], x0, y0, x1, y1);
+    raster_clear_pixels(&pass->depth, x0, y0, x1, y1);
+    raster_clear_pixels(&pass->stencil, x0, y0, x1, y1);
 }
 
 static void sum_stats(const amb_pass *pass, amb_pass_stats *sum)
@@ -270,6 +257,8 @@ amb_status amb_pass_finish(amb_pass **pass, amb_pass_stats *stats, amb_error *er
     bool done = make_workers(p) && run_draws(p);
     if (done && !p->target.keep)
         amb_parallel_for(p->context, p->tiles_x * p->tiles_y, clear_job, p);
+    if (done)
+        raster_finish_textures(p);
     if (done && stats)
         sum_stats(p, stats);
     amb_pass_close(pass);

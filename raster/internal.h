@@ -5,11 +5,14 @@
  *   vertex_wide.c shades those vertices and takes them to the window
  *   setup_wide.c  drops, culls and bounds the chunk's triangles; setup.c clips (clip.c) those that need it
  *   bin.c         sorts them into the tiles they touch
+ *   target.c      checks and clears attachments; formats.h says what they store
  *   tile_wide.c   plays all chunks of a batch over one tile: coverage, then fragment.h: depth, shading, blending
  *
  * A batch is bounded in bytes, so memory does not grow with the number of triangles. */
 #ifndef AMBIANCE_RASTER_INTERNAL_H
 #define AMBIANCE_RASTER_INTERNAL_H
+
+#include "raster/formats.h"
 
 #include <ambiance/raster.h>
 
@@ -104,15 +107,28 @@ typedef struct raster_scratch {
     amb_pass_stats stats;
 } raster_scratch;
 
+/* Where an attachment's pixels are. */
+typedef struct raster_attachment {
+    amb_image *image;     /* or, if NULL, */
+    amb_texture *texture; /* of one slice of one level */
+    int level, slice;
+    int channels;
+    int first; /* plane of its first channel; plane 0 is depth */
+    raster_format format;
+    float clear[4]; /* as stored; absent channels 0, alpha 1 */
+    uint32_t clear_words[4];
+} raster_attachment;
+
 struct amb_pass {
     const amb_context *context;
     amb_target target;
     int width, height;
     int target_count;
-    int channel_first[AMB_MAX_TARGETS]; /* plane of an attachment's first channel; plane 0 is depth */
-    int stencil_plane;                  /* 0: none */
-    int planes;                         /* of one sample */
-    int samples;                        /* 1, 2, 4 or 8 */
+    raster_attachment color[AMB_MAX_TARGETS], depth, stencil; /* the last two may have neither image nor texture */
+    raster_srgb *srgb;                                        /* NULL without an sRGB attachment */
+    int stencil_plane;                                        /* 0: none */
+    int planes;                                               /* of one sample */
+    int samples;                                              /* 1, 2, 4 or 8 */
     int32_t low_round, high_round; /* pixels that may be covered by lo…hi: (lo + low) >> 8 … (hi - high) >> 8 */
     float **tile_store;            /* per tile, between batches: all its samples; NULL at one sample */
     int tile_size, tiles_x, tiles_y;
@@ -141,6 +157,13 @@ static inline size_t raster_tile_floats(const amb_pass *pass)
 {
     return (size_t)pass->tile_size * (size_t)pass->tile_size * (size_t)pass->planes * (size_t)pass->samples;
 }
+
+/* Checks pass->target and fills what follows from it. */
+amb_status raster_prepare_target(amb_pass *pass, amb_error *error);
+/* Gives pixels x0…x1-1, y0…y1-1 the clear value. */
+void raster_clear_pixels(const raster_attachment *attachment, int x0, int y0, int x1, int y1);
+/* Refreshes the borders of textures that were rendered into. */
+void raster_finish_textures(const amb_pass *pass);
 
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch);
 /* One triangle the lanes leave alone: clipped, or too large for 32-bit areas. Sets scratch->failed. */

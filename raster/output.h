@@ -202,9 +202,12 @@ static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw
 /* ---- blending --------------------------------------------------------------------------------------------------- */
 
 /* One attachment, with one of the plain modes. */
-AMB_INLINE void store_target(const raster_pixels *at, int plane, int channels, amb_blend mode, const f32x source[4],
-                             maskx live, bool packed)
+AMB_INLINE void store_target(const raster_pixels *at, raster_format format, const raster_srgb *srgb, int plane,
+                             int channels, amb_blend mode, const f32x color[4], maskx live, bool packed)
 {
+    f32x source[4];
+    for (int c = 0; c < 4; c++)
+        source[c] = is_unorm(format) ? f_saturate(color[c]) : color[c];
     f32x rest = 1.0f - source[3];
     for (int c = 0; c < channels; c++, plane++) {
         f32x value = source[c];
@@ -214,7 +217,7 @@ AMB_INLINE void store_target(const raster_pixels *at, int plane, int channels, a
             value = source[c] + load_plane(at, plane, packed);
         else if (mode == AMB_BLEND_MULTIPLY)
             value = source[c] * load_plane(at, plane, packed);
-        store_plane(at, plane, value, live, packed);
+        store_plane(at, plane, quantize(format, srgb, c, value), live, packed);
     }
 }
 
@@ -277,10 +280,12 @@ static inline f32x blend_result(amb_blend_op op, f32x source, f32x source_factor
 }
 
 /* Any equation, any channel mask. */
-static __attribute__((noinline)) void store_general(const raster_pixels *at, int plane, int channels,
+static __attribute__((noinline)) void store_general(const raster_tile *tile, const raster_pixels *at, int plane,
                                                     const amb_draw *draw, int target, const amb_fs_out *out, maskx live,
                                                     bool packed)
 {
+    const raster_attachment *a = &tile->pass->color[target];
+    const bool clamped = is_unorm(a->format);
     static const amb_blend_equation known[AMB_BLEND_EQUATION] = {
         [AMB_BLEND_ALPHA] = {AMB_FACTOR_SOURCE_ALPHA, AMB_FACTOR_ONE_MINUS_SOURCE_ALPHA, AMB_FACTOR_ONE,
                              AMB_FACTOR_ONE_MINUS_SOURCE_ALPHA, 0, 0},
@@ -289,13 +294,17 @@ static __attribute__((noinline)) void store_general(const raster_pixels *at, int
     amb_blend mode = draw->blend[target];
     const amb_blend_equation *q = mode == AMB_BLEND_EQUATION ? &draw->equation[target] : &known[mode];
     const v4x *s = &out->color[target], *t = &out->color[1];
-    const f32x source[4] = {s->x, s->y, s->z, s->w}, second[4] = {t->x, t->y, t->z, t->w};
-    const float constant[4] = {draw->blend_constant.x, draw->blend_constant.y, draw->blend_constant.z,
-                               draw->blend_constant.w};
+    f32x source[4] = {s->x, s->y, s->z, s->w}, second[4] = {t->x, t->y, t->z, t->w};
+    float constant[4] = {draw->blend_constant.x, draw->blend_constant.y, draw->blend_constant.z,
+                         draw->blend_constant.w};
+    for (int c = 0; c < 4 && clamped; c++) {
+        source[c] = f_saturate(source[c]), second[c] = f_saturate(second[c]);
+        constant[c] = amb_s_min(amb_s_max(constant[c], 0.0f), 1.0f);
+    }
     f32x stored[4] = {f_set(0.0f), f_set(0.0f), f_set(0.0f), f_set(1.0f)};
-    for (int c = 0; c < channels; c++)
+    for (int c = 0; c < a->channels; c++)
         stored[c] = load_plane(at, plane + c, packed);
-    for (int c = 0; c < channels; c++) {
+    for (int c = 0; c < a->channels; c++) {
         if (draw->channels_off[target] >> c & 1)
             continue;
         amb_factor fs = c == 3 ? q->alpha_source : q->color_source, ft = c == 3 ? q->alpha_target : q->color_target;
@@ -305,8 +314,24 @@ static __attribute__((noinline)) void store_general(const raster_pixels *at, int
                          : blend_result(c == 3 ? q->alpha_op : q->color_op, source[c],
                                         blend_factor(fs, c, source, second, stored, constant), stored[c],
                                         blend_factor(ft, c, source, second, stored, constant));
-        store_plane(at, plane + c, value, live, packed);
+        store_plane(at, plane + c, quantize(a->format, tile->pass->srgb, c, value), live, packed);
     }
+}
+
+/* The plain modes on what is not float: one body a format. */
+static __attribute__((noinline)) void store_rounded(const raster_tile *tile, const raster_pixels *at, int plane,
+                                                    const raster_attachment *a, amb_blend mode, const f32x source[4],
+                                                    maskx live, bool packed)
+{
+    const raster_srgb *srgb = tile->pass->srgb;
+    if (a->format == RASTER_HALF)
+        store_target(at, RASTER_HALF, srgb, plane, a->channels, mode, source, live, packed);
+    else if (a->format == RASTER_UNORM8)
+        store_target(at, RASTER_UNORM8, srgb, plane, a->channels, mode, source, live, packed);
+    else if (a->format == RASTER_SRGB8)
+        store_target(at, RASTER_SRGB8, srgb, plane, 4, mode, source, live, packed);
+    else
+        store_target(at, RASTER_SMALL_FLOAT, srgb, plane, 3, mode, source, live, packed);
 }
 
 AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
@@ -317,13 +342,16 @@ AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, c
         if (draw->targets_off >> i & 1u)
             continue;
         const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
-        int plane = base + pass->channel_first[i], channels = pass->target.color[i]->channels;
+        const raster_attachment *a = &pass->color[i];
+        int plane = base + a->first;
         if (draw->blend[i] == AMB_BLEND_EQUATION || draw->channels_off[i] != 0)
-            store_general(at, plane, channels, draw, i, out, live, packed);
-        else if (channels == 4) /* the usual case, unrolled */
-            store_target(at, plane, 4, draw->blend[i], source, live, packed);
+            store_general(tile, at, plane, draw, i, out, live, packed);
+        else if (a->format != RASTER_FLOAT)
+            store_rounded(tile, at, plane, a, draw->blend[i], source, live, packed);
+        else if (a->channels == 4) /* the usual case, unrolled */
+            store_target(at, RASTER_FLOAT, NULL, plane, 4, draw->blend[i], source, live, packed);
         else
-            store_target(at, plane, channels, draw->blend[i], source, live, packed);
+            store_target(at, RASTER_FLOAT, NULL, plane, a->channels, draw->blend[i], source, live, packed);
     }
 }
 

@@ -25,68 +25,6 @@ bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_by
     return true;
 }
 
-static amb_status check_image(const amb_pass *pass, const amb_image *image, const char *name, int number,
-                              amb_error *error)
-{
-    if (image->width != pass->width || image->height != pass->height)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s %d is %d×%d, the first image is %d×%d; all must agree",
-                        name, number, image->width, image->height, pass->width, pass->height);
-    if (image->channels < 1 || image->channels > AMB_MAX_CHANNELS || !image->data)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s %d has %d channels; 1 to %d are allowed", name, number,
-                        image->channels, AMB_MAX_CHANNELS);
-    return AMB_OK;
-}
-
-/* A depth or stencil image. */
-static amb_status check_plain(const amb_pass *pass, const amb_image *image, const char *name, amb_error *error)
-{
-    amb_status status = check_image(pass, image, name, 0, error);
-    if (status == AMB_OK && image->channels != 1)
-        status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: the %s image has %d channels; it must have 1", name,
-                          image->channels);
-    for (int k = 0; k < pass->target_count && status == AMB_OK; k++)
-        if (pass->target.color[k] == image)
-            status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: colour image %d is also the %s image", k, name);
-    return status;
-}
-
-/* Counts the attachments and lays out a tile's planes. */
-static amb_status check_target(amb_pass *pass, amb_error *error)
-{
-    const amb_target *t = &pass->target;
-    const amb_image *first = t->color[0] ? t->color[0] : t->depth ? t->depth : t->stencil;
-    if (!first)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: neither colour, depth nor stencil image is given");
-    pass->width = first->width, pass->height = first->height;
-    if (pass->width < 1 || pass->height < 1 || pass->width > AMB_MAX_IMAGE_SIZE || pass->height > AMB_MAX_IMAGE_SIZE)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: size %d×%d is outside 1…%d", pass->width, pass->height,
-                        AMB_MAX_IMAGE_SIZE);
-    pass->stencil_plane = t->stencil ? 1 : 0;
-    pass->planes = 1 + pass->stencil_plane;
-    for (; pass->target_count < AMB_MAX_TARGETS && t->color[pass->target_count]; pass->target_count++) {
-        int i = pass->target_count;
-        amb_status status = check_image(pass, t->color[i], "colour image", i, error);
-        if (status != AMB_OK)
-            return status;
-        for (int k = 0; k < i; k++)
-            if (t->color[k] == t->color[i])
-                return amb_fail(error, AMB_ERROR_ARGUMENT, "target: colour images %d and %d are the same image", k, i);
-        pass->channel_first[i] = pass->planes;
-        pass->planes += t->color[i]->channels;
-    }
-    if (t->samples != 0 && t->samples != 1 && t->samples != 2 && t->samples != 4 && t->samples != 8)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: samples is %d; 0, 1, 2, 4 and 8 are allowed", t->samples);
-    pass->samples = t->samples > 1 ? t->samples : 1;
-    pass->low_round = pass->samples > 1 ? 0 : RASTER_SUBPIXEL / 2 - 1;
-    pass->high_round = pass->samples > 1 ? 0 : RASTER_SUBPIXEL / 2;
-    amb_status status = t->depth ? check_plain(pass, t->depth, "depth", error) : AMB_OK;
-    if (status == AMB_OK && t->stencil)
-        status = check_plain(pass, t->stencil, "stencil", error);
-    if (status == AMB_OK && t->depth && t->depth == t->stencil)
-        status = amb_fail(error, AMB_ERROR_ARGUMENT, "target: the depth image is also the stencil image");
-    return status;
-}
-
 /* The largest power of two g with g · half ≤ the guard band's reach: the product with any w is then exact. */
 static float guard_factor(int size)
 {
@@ -109,7 +47,7 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
         return amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory");
     pass->context = context;
     pass->target = *target;
-    amb_status status = check_target(pass, error);
+    amb_status status = raster_prepare_target(pass, error);
     if (status != AMB_OK)
         goto error;
     pass->tile_size = tile_size;
@@ -318,7 +256,7 @@ amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
         record.triangles = (uint64_t)record.per_instance * (draw->instances ? draw->instances : 1);
     }
     record.state.uniforms = record.uniforms;
-    if (!pass->target.depth)
+    if (!pass->depth.image && !pass->depth.texture)
         record.state.depth_compare = AMB_ALWAYS;
     else if (draw->depth_compare == AMB_COMPARE_DEFAULT)
         record.state.depth_compare = draw->vertex ? AMB_LESS : AMB_LESS_EQUAL;
@@ -372,6 +310,7 @@ void amb_pass_close(amb_pass **pass)
     free(p->chunk);
     free(p->scratch);
     free(p->tile_started);
+    free(p->srgb);
     free(p);
     *pass = NULL;
 }

@@ -1,23 +1,12 @@
 /* The tile stage: all chunks of a batch, in order, over one tile, from loading its pixels to storing them. */
 #include "raster/lines.h"
 #include "raster/multisample.h"
+#include "raster/tile_texture.h"
 
 #define raster_tile_play WIDE(raster_tile)
 void raster_tile_play(const amb_pass *pass, int tile, raster_scratch *scratch, int thread);
 
 /* ---- the tile's pixels ------------------------------------------------------------------------------------------ */
-
-/* Lanes of a block in row order, and back: the same exchange of quads' rows. */
-static inline f32x rows_of(f32x a)
-{
-#if AMB_LANES == 4
-    return a;
-#elif AMB_LANES == 8
-    return __builtin_shufflevector(a, a, 0, 1, 4, 5, 2, 3, 6, 7);
-#else
-    return __builtin_shufflevector(a, a, 0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15);
-#endif
-}
 
 #if AMB_LANES == 16 && AMB_X86
 #define RASTER_STREAMS 1
@@ -94,55 +83,66 @@ static void spread_samples(const raster_tile *tile)
         }
 }
 
-/* Averages the samples' colours into sample 0: neighbours in pairs, then pairs of pairs. */
-static void resolve_samples(const raster_tile *tile)
+/* Averages the samples of a channel into sample 0: neighbours in pairs, then pairs of pairs. */
+static void resolve_channel(const raster_tile *tile, const raster_attachment *a, int channel)
 {
     const size_t blocks = blocks_of(tile), floats = (size_t)tile->pass->planes * AMB_LANES;
-    const int samples = tile->pass->samples, first = 1 + tile->pass->stencil_plane;
-    for (size_t i = 0; i < blocks; i++)
-        for (int plane = first; plane < tile->pass->planes; plane++) {
-            float *at = tile->data + i * floats * (size_t)samples + (size_t)plane * AMB_LANES;
-            f32x sum[RASTER_MAX_SAMPLES];
-            for (int k = 0; k < samples; k++)
-                sum[k] = f_load(at + (size_t)k * floats);
-            for (int n = samples; n > 1; n /= 2)
-                for (int k = 0; k < n / 2; k++)
-                    sum[k] = sum[2 * k] + sum[2 * k + 1];
-            f_store(at, sum[0] * (1.0f / (float)samples));
-        }
+    const int samples = tile->pass->samples;
+    for (size_t i = 0; i < blocks; i++) {
+        float *at = tile->data + i * floats * (size_t)samples + (size_t)(a->first + channel) * AMB_LANES;
+        f32x sum[RASTER_MAX_SAMPLES];
+        for (int k = 0; k < samples; k++)
+            sum[k] = f_load(at + (size_t)k * floats);
+        for (int n = samples; n > 1; n /= 2)
+            for (int k = 0; k < n / 2; k++)
+                sum[k] = sum[2 * k] + sum[2 * k + 1];
+        f_store(at, quantize(a->format, tile->pass->srgb, channel, sum[0] * (1.0f / (float)samples)));
+    }
 }
 
-static void load_tile(const raster_tile *tile, bool from_images)
+static void resolve_samples(const raster_tile *tile)
 {
-    const amb_target *target = &tile->pass->target;
-    for (int i = 0; i < tile->pass->target_count; i++) {
-        const float *clear = &target->clear_color[i].x;
-        for (int c = 0; c < target->color[i]->channels; c++) {
-            fill(tile, tile->pass->channel_first[i] + c, from_images ? 0.0f : clear[c]);
-            if (from_images)
-                transfer(tile, target->color[i], c, tile->pass->channel_first[i] + c, false);
-        }
-    }
-    if (target->stencil) {
-        fill(tile, tile->pass->stencil_plane, from_images ? 0.0f : (float)target->clear_stencil);
-        if (from_images)
-            transfer(tile, target->stencil, 0, tile->pass->stencil_plane, false);
-    }
-    fill(tile, 0, from_images || !target->depth ? 0.0f : target->clear_depth);
-    if (target->depth && from_images)
-        transfer(tile, target->depth, 0, 0, false);
+    for (int i = 0; i < tile->pass->target_count; i++)
+        for (int c = 0; c < tile->pass->color[i].channels; c++)
+            resolve_channel(tile, &tile->pass->color[i], c);
+}
+
+/* Fills an attachment's planes with its pixels, or with its clear value. */
+static void load_attachment(const raster_tile *tile, const raster_attachment *a, bool from_target)
+{
+    for (int c = 0; c < a->channels; c++)
+        fill(tile, a->first + c, from_target ? 0.0f : a->clear[c]);
+    for (int c = 0; from_target && a->image && c < a->channels; c++)
+        transfer(tile, a->image, c, a->first + c, false);
+    if (from_target && a->texture)
+        transfer_texture(tile, a, false);
+}
+
+static void store_attachment(const raster_tile *tile, const raster_attachment *a)
+{
+    for (int c = 0; a->image && c < a->channels; c++)
+        transfer(tile, a->image, c, a->first + c, true);
+    if (a->texture)
+        transfer_texture(tile, a, true);
+}
+
+static void load_tile(const raster_tile *tile, bool from_target)
+{
+    const amb_pass *pass = tile->pass;
+    fill(tile, 0, 0.0f); /* without a depth attachment */
+    load_attachment(tile, &pass->depth, from_target);
+    load_attachment(tile, &pass->stencil, from_target);
+    for (int i = 0; i < pass->target_count; i++)
+        load_attachment(tile, &pass->color[i], from_target);
 }
 
 static void store_tile(const raster_tile *tile)
 {
-    const amb_target *target = &tile->pass->target;
-    for (int i = 0; i < tile->pass->target_count; i++)
-        for (int c = 0; c < target->color[i]->channels; c++)
-            transfer(tile, target->color[i], c, tile->pass->channel_first[i] + c, true);
-    if (target->stencil)
-        transfer(tile, target->stencil, 0, tile->pass->stencil_plane, true);
-    if (target->depth)
-        transfer(tile, target->depth, 0, 0, true);
+    const amb_pass *pass = tile->pass;
+    for (int i = 0; i < pass->target_count; i++)
+        store_attachment(tile, &pass->color[i]);
+    store_attachment(tile, &pass->stencil);
+    store_attachment(tile, &pass->depth);
 #if RASTER_STREAMS
     _mm_sfence();
 #endif

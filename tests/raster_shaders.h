@@ -11,10 +11,12 @@ typedef struct raster_test_vertex {
 
 typedef struct raster_test_uniforms {
     const raster_test_vertex *vertex;
-    v4 offset;     /* of clip per instance */
-    float discard; /* fragments with value.x below it are discarded (0: none) */
-    float depth;   /* written by the depth-writing shader: depth · this */
-    int holes;     /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
+    v4 offset;          /* of clip per instance */
+    float discard;      /* fragments with value.x below it are discarded (0: none) */
+    float depth;        /* written by the depth-writing shader: depth · this */
+    const float *table; /* of the table shader: four floats a pixel */
+    int table_width;
+    int holes; /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
 } raster_test_uniforms;
 
 typedef struct raster_test_shaders {
@@ -26,6 +28,7 @@ typedef struct raster_test_shaders {
     amb_fragment_shader coded;       /* targets: RASTER_TEST_CODE of primitive and channel */
     amb_fragment_shader coded_depth; /* and depth: RASTER_TEST_CODE of the primitive and 9 */
     amb_fragment_shader screen;      /* target 0: x, y, depth, 1 */
+    amb_fragment_shader table;       /* every target: the table's value of the pixel */
 } raster_test_shaders;
 
 /* A small exact number of a primitive and a channel: -¼…1, without rounding. */

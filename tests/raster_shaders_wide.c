@@ -66,8 +66,19 @@ static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
     out->depth = code(in->primitive, 9);
 }
 
+static void table(const amb_fs_in *in, amb_fs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    i32x first = (f_to_i(in->y) * u->table_width + f_to_i(in->x)) * 4;
+    v4x value = {f_gather(u->table, first), f_gather(u->table, first + 1), f_gather(u->table, first + 2),
+                 f_gather(u->table, first + 3)};
+    for (int i = 0; i < AMB_MAX_TARGETS; i++)
+        out->color[i] = value;
+}
+
 const raster_test_shaders *raster_test_shaders_get(void)
 {
-    static const raster_test_shaders shaders = {AMB_LANES, vertex, value, one, write_depth, coded, coded_depth, screen};
+    static const raster_test_shaders shaders = {AMB_LANES, vertex,      value,  one,  write_depth,
+                                                coded,     coded_depth, screen, table};
     return &shaders;
 }

@@ -524,8 +524,8 @@ static void bad_targets_are_refused(void **state)
     refuse_target(context, &(amb_target){.color = {a, b}}, "4×5");
     refuse_target(context, &(amb_target){.color = {a}, .depth = b}, "4×5");
     refuse_target(context, &(amb_target){.color = {c}, .depth = a}, "4 channels");
-    refuse_target(context, &(amb_target){.color = {a, c, a}}, "same image");
-    refuse_target(context, &(amb_target){.color = {a, c}, .depth = c}, "also the depth");
+    refuse_target(context, &(amb_target){.color = {a, c, a}}, "colour image 0 is also colour image 2");
+    refuse_target(context, &(amb_target){.color = {a, c}, .depth = c}, "colour image 1 is also depth image 0");
     refuse_target(context, &(amb_target){.color = {a}, .stencil = a}, "4 channels");
     refuse_target(context, &(amb_target){.color = {a}, .depth = c, .stencil = c}, "also the stencil");
     refuse_target(context, &(amb_target){.color = {a}, .samples = 3}, "samples is 3");

@@ -167,10 +167,22 @@ typedef struct amb_draw {
     bool alpha_to_coverage; /* of n samples, only the first ⌊n·a + ½⌋ are written, a = alpha of color[0] in 0…1 */
 } amb_draw;
 
+/* A layer of an array, a face of a cube or a slice of a 3D texture, at one level. */
+typedef struct amb_texture_slice {
+    amb_texture *texture; /* NULL: none */
+    int level, slice;
+} amb_texture_slice;
+
+/* Attachments are images, which hold what the draws wrote as it is, or slices of textures, which round it to their
+ * format at every write, so that blending reads what a GPU's reads (half, R11G11B10F, 8-bit unorm and sRGB; blending
+ * is linear). Textures must not be sampled before the pass has finished; their other levels are left as they are: see
+ * amb_texture_make_mips. */
 typedef struct amb_target {
-    amb_image *color[AMB_MAX_TARGETS]; /* all of one size; 1…4 channels each; NULL ends the list */
-    amb_image *depth;                  /* one channel; may be NULL */
-    amb_image *stencil;                /* one channel of whole numbers 0…255; may be NULL */
+    amb_image *color[AMB_MAX_TARGETS];                /* all of one size; 1…4 channels each */
+    amb_texture_slice color_texture[AMB_MAX_TARGETS]; /* where color[i] is NULL; neither ends the list */
+    amb_image *depth;                                 /* one channel; may be NULL */
+    amb_texture_slice depth_texture;                  /* R32F; where depth is NULL */
+    amb_image *stencil;                               /* one channel of whole numbers 0…255; may be NULL */
     v4 clear_color[AMB_MAX_TARGETS];
     float clear_depth; /* used as it is: give 1 for the usual */
     uint8_t clear_stencil;
@@ -211,7 +223,7 @@ typedef struct amb_pass_stats {
 
 typedef struct amb_pass amb_pass;
 
-/* The images must outlive the pass. Errors: ARGUMENT, MEMORY. */
+/* Images and textures must outlive the pass. Errors: ARGUMENT, MEMORY. */
 amb_status amb_pass_begin(const amb_context *context, const amb_target *target, amb_pass **out, amb_error *error);
 /* Errors: ARGUMENT (naming the field), ISA (lanes differ from the context's), MEMORY. */
 amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error);
