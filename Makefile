@@ -192,8 +192,8 @@ deps: ## install the Debian packages that are missing
 	    { echo "could not install:" $$missing "(as root: apt-get install them)"; exit 1; }; \
 	fi
 
-assets: ## fetch the asset pack into build/assets (ASSETS=builtin: nothing)
-	$(if $(filter builtin,$(ASSETS)),@echo "asset pack: not fetched (ASSETS=builtin)",@scenes/pack/fetch.sh $(BUILD)/assets)
+assets: ## fetch the asset pack into build/assets (ASSETS=builtin: nothing; OPTIONAL=1: its optional packages too)
+	$(if $(filter builtin,$(ASSETS)),@echo "asset pack: not fetched (ASSETS=builtin)",@AMBIANCE_PACK_OPTIONAL=$(OPTIONAL) scenes/pack/fetch.sh $(BUILD)/assets)
 
 DEMO_SCENES ?= julia mercury lucy
 DEMO_SIZE   ?= 1440x1080

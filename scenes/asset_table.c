@@ -23,6 +23,13 @@
         .user_file = {NAME ".png", NAME ".jpg", NAME ".jpeg", NAME ".exr", NAME ".hdr"}, .pack_file = PACK, \
         .version = VERSION, .make_texture = MAKE                                                            \
     }
+/* A map made from the map OF by DERIVE, unless there is a file, or a generator and OF is built in. */
+#define DERIVED_MAP(NAME, ABOUT, SRGB, PACK, VERSION, MAKE, OF, DERIVE)                                     \
+    {                                                                                                       \
+        .name = NAME, .about = ABOUT, .kind = ASSET_TEXTURE, .srgb = SRGB,                                  \
+        .user_file = {NAME ".png", NAME ".jpg", NAME ".jpeg", NAME ".exr", NAME ".hdr"}, .pack_file = PACK, \
+        .version = VERSION, .make_texture = MAKE, .of = OF, .derive = DERIVE                                \
+    }
 #define MAP(NAME, ABOUT, SRGB, VERSION, MAKE) PACKED_MAP(NAME, ABOUT, SRGB, NULL, VERSION, MAKE)
 
 const asset_row asset_table[] = {
@@ -52,20 +59,30 @@ const asset_row asset_table[] = {
      .version = 1,
      .make_mesh = amb_builtin_statue},
     /* Maps of the solar system. */
-    MAP("earth/color", "the Earth by day", true, 1, amb_builtin_earth_colour),
-    MAP("earth/night", "its lights at night", true, 1, amb_builtin_earth_night),
-    MAP("earth/water", "1 on water, 0 on land", false, 1, amb_builtin_earth_water),
-    MAP("earth/height", "its height", false, 1, amb_builtin_earth_height),
-    MAP("earth/clouds", "cover of its clouds", false, 1, amb_builtin_earth_clouds),
+    PACKED_MAP("earth/color", "the Earth by day", true, "earth/color.jpg", 2, amb_builtin_earth_colour),
+    PACKED_MAP("earth/night", "its lights at night", true, "earth/night.jpg", 2, amb_builtin_earth_night),
+    PACKED_MAP("earth/water", "1 on water, 0 on land", false, "earth/water.png", 2, amb_builtin_earth_water),
+    PACKED_MAP("earth/height", "its height", false, "earth/height.png", 2, amb_builtin_earth_height),
+    PACKED_MAP("earth/clouds", "cover of its clouds: brightness times alpha", false, "earth/clouds.png", 2,
+               amb_builtin_earth_clouds),
     MAP("venus/color", "the clouds of Venus", true, 1, amb_builtin_venus_colour),
-    MAP("mars/color", "Mars", true, 1, amb_builtin_mars_colour),
-    MAP("mars/height", "its height", false, 1, amb_builtin_mars_height),
-    MAP("jupiter/color", "Jupiter", true, 2, amb_builtin_jupiter_colour),
-    MAP("jupiter/color1", "Jupiter, key frame 1 of its drifting bands", true, 2, amb_builtin_jupiter_colour1),
-    MAP("jupiter/color2", "Jupiter, key frame 2 of its drifting bands", true, 2, amb_builtin_jupiter_colour2),
-    MAP("jupiter/color3", "Jupiter, key frame 3 of its drifting bands", true, 2, amb_builtin_jupiter_colour3),
-    MAP("jupiter/color4", "Jupiter, key frame 4 of its drifting bands", true, 2, amb_builtin_jupiter_colour4),
-    MAP("jupiter/velocity", "drift of its bands: 128 still, more to the right", false, 2, amb_builtin_jupiter_velocity),
+    PACKED_MAP("venus/surface", "the ground below them", true, "venus/surface.jpg", 1, amb_builtin_venus_surface),
+    PACKED_MAP("mars/color", "Mars", true, "mars/color.jpg", 2, amb_builtin_mars_colour),
+    DERIVED_MAP("mars/height", "its height", false, NULL, 2, amb_builtin_mars_height, "mars/color",
+                amb_builtin_brightness),
+    DERIVED_MAP("mars/relief", "its normals, coded: x east, y south, z up", false, "mars/relief.jpg", 1, NULL,
+                "mars/height", amb_builtin_mars_relief),
+    PACKED_MAP("jupiter/color", "Jupiter", true, "jupiter/color.jpg", 3, amb_builtin_jupiter_colour),
+    DERIVED_MAP("jupiter/color1", "Jupiter, key frame 1 of its drifting bands", true, NULL, 3, NULL, "jupiter/color",
+                amb_builtin_jupiter_key1),
+    DERIVED_MAP("jupiter/color2", "Jupiter, key frame 2 of its drifting bands", true, NULL, 3, NULL, "jupiter/color",
+                amb_builtin_jupiter_key2),
+    DERIVED_MAP("jupiter/color3", "Jupiter, key frame 3 of its drifting bands", true, NULL, 3, NULL, "jupiter/color",
+                amb_builtin_jupiter_key3),
+    DERIVED_MAP("jupiter/color4", "Jupiter, key frame 4 of its drifting bands", true, NULL, 3, NULL, "jupiter/color",
+                amb_builtin_jupiter_key4),
+    DERIVED_MAP("jupiter/velocity", "drift of its bands: 128 still, more to the right", false, NULL, 3, NULL,
+                "jupiter/color", amb_builtin_jupiter_velocity),
     PACKED_MAP("saturn/color", "Saturn", true, "saturn/color.jpg", 1, amb_builtin_saturn_colour),
     MAP("saturn/rings", "tint and opacity of its rings by radius", true, 1, amb_builtin_saturn_rings),
     MAP("saturn/scatter", "back-, forward- and unlit-scattered light of its rings", false, 1,
@@ -73,8 +90,9 @@ const asset_row asset_table[] = {
     PACKED_MAP("uranus/color", "Uranus", true, "uranus/color.jpg", 1, amb_builtin_uranus_colour),
     MAP("uranus/rings", "tint and opacity of its rings by radius", true, 1, amb_builtin_uranus_rings),
     PACKED_MAP("neptune/color", "Neptune", true, "neptune/color.jpg", 1, amb_builtin_neptune_colour),
-    MAP("pluto/color", "Pluto", true, 1, amb_builtin_pluto_colour),
-    MAP("pluto/gloss", "where its ice shines", false, 1, amb_builtin_pluto_gloss),
+    PACKED_MAP("pluto/color", "Pluto", true, "pluto/color.png", 1, amb_builtin_pluto_colour),
+    DERIVED_MAP("pluto/gloss", "where its ice shines", false, NULL, 1, amb_builtin_pluto_gloss, "pluto/color",
+                amb_builtin_brightness),
     PACKED_MAP("sun/color", "the surface of the sun", true, "sun/color.jpg", 1, amb_builtin_sun_colour),
 };
 const int asset_table_count = sizeof asset_table / sizeof *asset_table;

@@ -19,6 +19,10 @@ typedef struct asset_row {
     const char *pack_file;    /* NULL: the pack has none */
     int version;              /* of the generator: raised when its result changes */
     amb_status (*make_texture)(const amb_context *context, amb_texture **out, amb_error *error);
+    /* Made from the texture of an earlier row, `of`, where no file is found: always when there is no make_texture, else
+     * when that texture is not built in, so that maps of one planet fit together. */
+    const char *of;
+    amb_status (*derive)(const amb_context *context, const amb_texture *of, amb_texture **out, amb_error *error);
     amb_status (*make_mesh)(const amb_context *context, amb_mesh **out, amb_error *error);
 } asset_row;
 

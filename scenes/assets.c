@@ -17,9 +17,10 @@
 typedef struct asset {
     const asset_row *row;
     amb_asset_source source;
-    char path[1024]; /* "" for built in */
-    char sha256[65]; /* "" until made or read */
-    bool is_used;    /* handed out */
+    char path[1024];  /* "" for built in */
+    char sha256[65];  /* "" until made or read */
+    bool is_used;     /* handed out */
+    struct asset *of; /* what it is made from; NULL: a file or a generator */
     amb_texture *texture;
     amb_mesh *mesh;
 } asset;
@@ -104,14 +105,30 @@ static amb_status look_for(const char *folder, const char *file, char path[1024]
     return status;
 }
 
-static amb_status resolve(asset *item, const char *user, const char *pack, amb_error *error)
+/* An asset made from another one comes from where that one does. */
+static void resolve_of(asset *item, asset *of)
+{
+    item->of = of;
+    item->source = of->source;
+    memcpy(item->path, of->path, sizeof item->path);
+}
+
+/* The item of a name in the rows before `end`; NULL: none. */
+static asset *named(asset *items, const asset *end, const char *name)
+{
+    for (asset *item = items; item < end; item++)
+        if (strcmp(item->row->name, name) == 0)
+            return item;
+    return NULL;
+}
+
+static amb_status resolve(asset *items, asset *item, const char *user, const char *pack, amb_error *error)
 {
     const size_t names = sizeof item->row->user_file / sizeof *item->row->user_file;
     bool is_found = false;
     amb_status status = AMB_OK;
-    if (item->row->kind == ASSET_IRRADIANCE) { /* where its environment comes from */
-        item->source = item[-1].source;
-        memcpy(item->path, item[-1].path, sizeof item->path);
+    if (item->row->kind == ASSET_IRRADIANCE) {
+        resolve_of(item, item - 1);
         return AMB_OK;
     }
     item->source = AMB_ASSET_USER;
@@ -121,9 +138,13 @@ static amb_status resolve(asset *item, const char *user, const char *pack, amb_e
         item->source = AMB_ASSET_PACK;
         status = look_for(pack, item->row->pack_file, item->path, &is_found, error);
     }
-    if (!is_found)
-        item->source = AMB_ASSET_BUILTIN;
-    return status;
+    if (is_found || status != AMB_OK)
+        return status;
+    item->source = AMB_ASSET_BUILTIN;
+    asset *of = item->row->of ? named(items, item, item->row->of) : NULL;
+    if (of && (!item->row->make_texture || of->source != AMB_ASSET_BUILTIN))
+        resolve_of(item, of);
+    return AMB_OK;
 }
 
 amb_status amb_assets_create(const amb_context *context, const amb_assets_options *options, amb_assets **out,
@@ -148,7 +169,7 @@ amb_status amb_assets_create(const amb_context *context, const amb_assets_option
         status = find_pack_folder(options->pack_dir, pack, error);
     for (int i = 0; i < asset_table_count && status == AMB_OK; i++) {
         items[i].row = &asset_table[i];
-        status = resolve(&items[i], user, pack, error);
+        status = resolve(items, &items[i], user, pack, error);
     }
     if (status != AMB_OK)
         amb_assets_close(&assets);
@@ -245,19 +266,29 @@ static amb_status load_source(const amb_context *context, asset *item, amb_error
     return status;
 }
 
+static amb_status load(const amb_context *context, asset *item, amb_error *error);
+
+/* From another asset's texture. Its hash is that one's for irradiance, else over "NAME:VERSION of" and that one's. */
+static amb_status load_derived(const amb_context *context, asset *item, amb_error *error)
+{
+    char text[192];
+    amb_status status = load(context, item->of, error);
+    if (status != AMB_OK)
+        return status;
+    if (item->row->kind == ASSET_IRRADIANCE) {
+        memcpy(item->sha256, item->of->sha256, sizeof item->sha256);
+        return amb_irradiance_cube(context, item->of->texture, &item->texture, error);
+    }
+    int length = snprintf(text, sizeof text, "%s:%d of %s", item->row->name, item->row->version, item->of->sha256);
+    SHA256Data((const uint8_t *)text, (size_t)length, item->sha256);
+    return item->row->derive(context, item->of->texture, &item->texture, error);
+}
+
 static amb_status load(const amb_context *context, asset *item, amb_error *error)
 {
     if (item->texture || item->mesh)
         return AMB_OK;
-    if (item->row->kind != ASSET_IRRADIANCE)
-        return load_source(context, item, error);
-    asset *environment = item - 1;
-    amb_status status = load(context, environment, error);
-    if (status == AMB_OK)
-        status = amb_irradiance_cube(context, environment->texture, &item->texture, error);
-    if (status == AMB_OK)
-        memcpy(item->sha256, environment->sha256, sizeof item->sha256);
-    return status;
+    return item->of ? load_derived(context, item, error) : load_source(context, item, error);
 }
 
 static const char *name_of(const void *user, int index)
@@ -271,9 +302,8 @@ static amb_status use(amb_assets *assets, const char *name, bool is_mesh, asset 
 {
     asset *item = NULL;
     char hint[320];
-    for (int i = 0; i < assets->count && name; i++)
-        if (strcmp(assets->asset[i].row->name, name) == 0)
-            item = &assets->asset[i];
+    if (name)
+        item = named(assets->asset, assets->asset + assets->count, name);
     if (!item)
         return amb_fail(error, AMB_ERROR_NOT_FOUND, "unknown asset: %s; %s", name ? name : "(none)",
                         amb_names_hint(name ? name : "", assets->count, name_of, NULL, hint, sizeof hint));

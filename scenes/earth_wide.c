@@ -5,8 +5,6 @@
 #include "shade/diffuse.h"
 #include "shade/specular.h"
 
-#include <stdlib.h>
-
 extern const planet_body WIDE(planet_earth);
 
 typedef struct earth_params {
@@ -33,6 +31,7 @@ static const amb_param earth_table[] = {
     {"cloud_shadow", AMB_PARAM_FLOAT, "", 0, 1, {0.6f}, NULL, FIELD(cloud_shadow), "strength of their shadows"},
     {"cloud_bump", AMB_PARAM_FLOAT, "", 0, 10, {1.0f}, NULL, FIELD(cloud_bump), "strength of their relief"},
     {"air", AMB_PARAM_BOOL, "", 0, 0, {1}, NULL, FIELD(show_air), "draw the air"},
+    PLANET_SHOW_ROW(earth_params),
 };
 #undef FIELD
 
@@ -47,7 +46,8 @@ static const amb_aov earth_aovs[EARTH_AOVS] = {
 typedef struct earth_state {
     planet_state planet;
     const amb_texture *colour, *night, *water, *height, *clouds;
-    amb_texture *relief, *cloud_relief;
+    amb_texture *ground;                /* colour, water in alpha */
+    amb_texture *relief, *cloud_relief; /* coded normals, height or cover in alpha */
 } earth_state;
 
 typedef struct earth_uniforms {
@@ -66,8 +66,8 @@ static f32x under_clouds(const earth_uniforms *u, const planet_point *p, f32x n_
     f32x way = (u->cloud_shell - 1.0f) / f_max(n_dot_l, f_set(0.12f));
     v3x above = v3x_add(p->world, v3x_scale(v3x_splat(view->to_sun), way));
     v2x uv = planet_uv(v3x_normalize(planet_to_own(view, above)));
-    v4x cover = amb_sample_2d_grad(u->state->clouds, &planet_sampler, uv, p->uv_dx, p->uv_dy);
-    return 1.0f - cover.x * (u->params->cloud_shadow * u->params->clouds);
+    v4x cover = amb_sample_2d_grad(u->state->cloud_relief, &planet_sampler, uv, p->uv_dx, p->uv_dy);
+    return 1.0f - cover.w * (u->params->cloud_shadow * u->params->clouds);
 }
 
 static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
@@ -79,11 +79,11 @@ static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
     planet_point p = planet_point_of(view, v->world);
     v3x to_sun = v3x_splat(view->to_sun);
 
-    f32x height = planet_map(u->state->height, &p).x;
+    f32x height = planet_map(u->state->relief, &p).w;
     v3x eye_tangent = normal_map_to_tangent(p.to_eye, p.east, p.south, p.normal);
     p.uv = parallax_offset(p.uv, eye_tangent, height, k->parallax, 0.0f);
-    v3x albedo = v4x_xyz(planet_map(u->state->colour, &p));
-    f32x water = planet_map(u->state->water, &p).x;
+    v4x ground = planet_map(u->state->ground, &p);
+    v3x albedo = v4x_xyz(ground);
     v3x normal = planet_bumped(&p, planet_map(u->state->relief, &p), k->bump);
 
     f32x n_dot_l = v3x_dot(normal, to_sun), smooth_n_dot_l = v3x_dot(p.normal, to_sun);
@@ -92,7 +92,7 @@ static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
                              under_clouds(u, &p, smooth_n_dot_l));
     v3x day = v3x_mul(v3x_scale(albedo, lit), sunlight);
     v3x night = v3x_scale(v4x_xyz(planet_map(u->state->night, &p)), diffuse_night(smooth_n_dot_l) * k->night);
-    f32x highlight = specular_blinn_phong(p.normal, to_sun, p.to_eye, k->gloss_exponent) * water * k->gloss;
+    f32x highlight = specular_blinn_phong(p.normal, to_sun, p.to_eye, k->gloss_exponent) * ground.w * k->gloss;
     v3x gloss = v3x_scale(sunlight, highlight);
 
     planet_put_surface(view, out, &p, normal, albedo, 1.0f);
@@ -100,7 +100,7 @@ static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
     planet_put(view, out, EARTH_DAY, day);
     planet_put(view, out, EARTH_NIGHT, night);
     planet_put(view, out, EARTH_GLOSS, gloss);
-    out->color[0] = v4x_of3(v3x_add(v3x_add(day, night), gloss), f_set(1.0f));
+    out->color[0] = planet_shown(view, v3x_add(v3x_add(day, night), gloss), albedo, normal, v3x_scale(sunlight, lit));
 }
 
 /* Their alpha is faded by a view-aligned ring, so that they do not cut into the sky dome. */
@@ -110,56 +110,18 @@ static void earth_clouds(const amb_fs_in *in, amb_fs_out *out)
     const planet_varyings *v = in->varyings;
     const planet_view *view = &u->air.view;
     planet_point p = planet_point_of(view, v->world);
-    f32x cover = planet_map(u->state->clouds, &p).x;
-    v3x normal = planet_bumped(&p, planet_map(u->state->cloud_relief, &p), u->params->cloud_bump);
+    v4x map = planet_map(u->state->cloud_relief, &p);
+    v3x normal = planet_bumped(&p, map, u->params->cloud_bump);
     f32x smooth_n_dot_l = v3x_dot(p.normal, v3x_splat(view->to_sun));
     f32x lit = diffuse_wrapped(v3x_dot(normal, v3x_splat(view->to_sun)), 0.15f) *
                f_smoothstep(f_set(-0.14f), f_set(0.10f), smooth_n_dot_l);
     v3x light = v3x_mul(v3x_splat(view->sun_rgb), planet_sunlight_at_ground(&u->air.air, smooth_n_dot_l));
     f32x ring = view_aligned_ring(v3x_dot(p.normal, p.to_eye), u->params->cloud_ring);
-    f32x alpha = f_saturate(cover - ring) * u->params->clouds;
+    f32x alpha = f_saturate(map.w - ring) * u->params->clouds;
     out->color[0] = v4x_of3(v3x_scale(light, lit * 0.92f), alpha);
 }
 
 /* ---- scene ------------------------------------------------------------------------------------------------------ */
-
-static void earth_unload(void *opaque)
-{
-    earth_state *state = opaque;
-    planet_unload(&state->planet);
-    amb_texture_close(&state->relief);
-    amb_texture_close(&state->cloud_relief);
-    free(state);
-}
-
-static amb_status earth_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
-{
-    earth_state *s = calloc(1, sizeof *s);
-    *out = NULL;
-    if (!s)
-        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene earth");
-    const planet_map_name maps[] = {{"earth/color", &s->colour},
-                                    {"earth/night", &s->night},
-                                    {"earth/water", &s->water},
-                                    {"earth/height", &s->height},
-                                    {"earth/clouds", &s->clouds}};
-    amb_status status = planet_load(assets, &s->planet, error);
-    if (status == AMB_OK)
-        status = planet_load_maps(assets, maps, sizeof maps / sizeof *maps, error);
-    amb_normal_map_options relief = {
-        .strength = 9.0f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true};
-    if (status == AMB_OK)
-        status = planet_normal_texture(context, s->height, &relief, &s->relief, error);
-    relief.strength = 2.2f;
-    if (status == AMB_OK)
-        status = planet_normal_texture(context, s->clouds, &relief, &s->cloud_relief, error);
-    if (status != AMB_OK) {
-        earth_unload(s);
-        return status;
-    }
-    *out = s;
-    return AMB_OK;
-}
 
 static amb_status earth_draw(const void *opaque, const void *params, const planet_view *from, double time,
                              amb_pass *pass, amb_error *error)
@@ -180,14 +142,12 @@ static amb_status earth_draw(const void *opaque, const void *params, const plane
     clouds.blend[0] = AMB_BLEND_ALPHA;
     clouds.depth_write_off = true;
     clouds.targets_off = ~1u;
-    if (status == AMB_OK && p->clouds > 0.0f)
+    if (status == AMB_OK && p->clouds > 0.0f && view->show == PLANET_SHOW_BEAUTY)
         status = amb_pass_draw(pass, &clouds, error);
     if (status == AMB_OK && p->show_air)
         status = planet_air_draw(pass, &u.air, error);
     return status;
 }
-
-const planet_body WIDE(planet_earth) = {earth_load, earth_unload, earth_draw};
 
 static const amb_camera_key earth_keys[] = {
     {0.0f, {-0.35f, 0.45f, 2.95f}, {0.0f, 0.0f, 0.0f}, {0, 1, 0}},
@@ -200,10 +160,33 @@ static const amb_camera_key earth_keys[] = {
 
 static const planet_flight earth_flight = {earth_keys, sizeof earth_keys / sizeof *earth_keys, 42.0f};
 
-static amb_status earth_frame(const void *state, const amb_scene_job *job, amb_error *error)
+const planet_body WIDE(planet_earth) = {
+    .name = "earth",
+    .state_bytes = sizeof(earth_state),
+    .map = {{"earth/color", offsetof(earth_state, colour)},
+            {"earth/night", offsetof(earth_state, night)},
+            {"earth/water", offsetof(earth_state, water)},
+            {"earth/height", offsetof(earth_state, height)},
+            {"earth/clouds", offsetof(earth_state, clouds)}},
+    .made = {{.offset = offsetof(earth_state, ground),
+              .from = offsetof(earth_state, colour),
+              .alpha = offsetof(earth_state, water)},
+             {.offset = offsetof(earth_state, relief),
+              .from = offsetof(earth_state, height),
+              .relief = {.strength = 9.0f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true}},
+             {.offset = offsetof(earth_state, cloud_relief),
+              .from = offsetof(earth_state, clouds),
+              .relief = {.strength = 2.2f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true}}},
+    .draw = earth_draw,
+    .background = &planet_background_draw,
+    .aovs = earth_aovs,
+    .aov_count = EARTH_AOVS,
+    .flight = &earth_flight,
+};
+
+static amb_status earth_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error)
 {
-    return planet_frame(&WIDE(planet_earth), earth_aovs, EARTH_AOVS, &earth_flight, planet_background_draw, state, job,
-                        error);
+    return planet_load(&WIDE(planet_earth), context, assets, state, error);
 }
 
 const amb_scene WIDE(amb_scene_earth) = {
@@ -215,6 +198,6 @@ const amb_scene WIDE(amb_scene_earth) = {
     .aov_count = EARTH_AOVS,
     .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
     .load = earth_load,
-    .frame = earth_frame,
-    .unload = earth_unload,
+    .frame = planet_frame,
+    .unload = planet_unload,
 };

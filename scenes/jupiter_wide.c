@@ -2,8 +2,6 @@
 #include "scenes/builtin/giants.h"
 #include "scenes/planet_surface_wide.h"
 
-#include <stdlib.h>
-
 extern const planet_body WIDE(planet_jupiter);
 
 typedef struct jupiter_params {
@@ -14,7 +12,7 @@ typedef struct jupiter_params {
 } jupiter_params;
 
 static const amb_param jupiter_table[] = {
-    PLANET_PARAM_ROWS(jupiter_params, -82, 8, 115, 120, 3),
+    PLANET_PARAM_ROWS(jupiter_params, -82, 8, 195, 120, 3),
     PLANET_SURFACE_ROWS(jupiter_params, 0.16f, 0.80f, 0.62f, 0.80f, 0.58f, 0.55f, 2.6f, 0, 0, 0),
     {"oblateness",
      AMB_PARAM_FLOAT,
@@ -35,6 +33,7 @@ static const amb_param jupiter_table[] = {
      offsetof(jupiter_params, key_time),
      "from one key frame of the map to the next"},
     {"still", AMB_PARAM_BOOL, "", 0, 0, {0}, NULL, offsetof(jupiter_params, still), "show the first key frame only"},
+    PLANET_SHOW_ROW(jupiter_params),
 };
 static const amb_aov jupiter_aovs[] = {PLANET_AOV_ROWS};
 
@@ -42,34 +41,6 @@ typedef struct jupiter_state {
     planet_state planet;
     const amb_texture *key[JUPITER_KEYS], *velocity;
 } jupiter_state;
-
-static void jupiter_unload(void *opaque)
-{
-    jupiter_state *state = opaque;
-    planet_unload(&state->planet);
-    free(state);
-}
-
-static amb_status jupiter_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
-{
-    jupiter_state *s = calloc(1, sizeof *s);
-    *out = NULL;
-    (void)context;
-    if (!s)
-        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene jupiter");
-    const planet_map_name maps[] = {{"jupiter/color", &s->key[0]},  {"jupiter/color1", &s->key[1]},
-                                    {"jupiter/color2", &s->key[2]}, {"jupiter/color3", &s->key[3]},
-                                    {"jupiter/color4", &s->key[4]}, {"jupiter/velocity", &s->velocity}};
-    amb_status status = planet_load(assets, &s->planet, error);
-    if (status == AMB_OK)
-        status = planet_load_maps(assets, maps, sizeof maps / sizeof *maps, error);
-    if (status != AMB_OK) {
-        jupiter_unload(s);
-        return status;
-    }
-    *out = s;
-    return AMB_OK;
-}
 
 static amb_status jupiter_draw(const void *opaque, const void *params, const planet_view *view, double time,
                                amb_pass *pass, amb_error *error)
@@ -92,19 +63,25 @@ static amb_status jupiter_draw(const void *opaque, const void *params, const pla
     return amb_pass_draw(pass, &draw, error);
 }
 
-const planet_body WIDE(planet_jupiter) = {jupiter_load, jupiter_unload, jupiter_draw};
-
-static const amb_camera_key jupiter_keys[] = {
-    {0.0f, {-1.1f, 0.35f, 2.75f}, {0, 0, 0}, {0, 1, 0}},  {10.0f, {1.2f, 0.75f, 2.4f}, {0.1f, 0, 0}, {0, 1, 0}},
-    {20.0f, {2.5f, 0.1f, 1.1f}, {0, 0, 0}, {0, 1, 0}},    {30.0f, {0.6f, -0.5f, 2.9f}, {0, 0, 0}, {0, 1, 0}},
-    {40.0f, {-1.1f, 0.35f, 2.75f}, {0, 0, 0}, {0, 1, 0}},
+const planet_body WIDE(planet_jupiter) = {
+    .name = "jupiter",
+    .state_bytes = sizeof(jupiter_state),
+    .map = {{"jupiter/color", offsetof(jupiter_state, key[0])},
+            {"jupiter/color1", offsetof(jupiter_state, key[1])},
+            {"jupiter/color2", offsetof(jupiter_state, key[2])},
+            {"jupiter/color3", offsetof(jupiter_state, key[3])},
+            {"jupiter/color4", offsetof(jupiter_state, key[4])},
+            {"jupiter/velocity", offsetof(jupiter_state, velocity)}},
+    .draw = jupiter_draw,
+    .background = &planet_background_draw,
+    .aovs = jupiter_aovs,
+    .aov_count = PLANET_AOVS,
+    .flight = &planet_flight_ball,
 };
-static const planet_flight jupiter_flight = {jupiter_keys, sizeof jupiter_keys / sizeof *jupiter_keys, 40.0f};
 
-static amb_status jupiter_frame(const void *state, const amb_scene_job *job, amb_error *error)
+static amb_status jupiter_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error)
 {
-    return planet_frame(&WIDE(planet_jupiter), jupiter_aovs, PLANET_AOVS, &jupiter_flight, planet_background_draw,
-                        state, job, error);
+    return planet_load(&WIDE(planet_jupiter), context, assets, state, error);
 }
 
 const amb_scene WIDE(amb_scene_jupiter) = {
@@ -116,6 +93,6 @@ const amb_scene WIDE(amb_scene_jupiter) = {
     .aov_count = PLANET_AOVS,
     .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
     .load = jupiter_load,
-    .frame = jupiter_frame,
-    .unload = jupiter_unload,
+    .frame = planet_frame,
+    .unload = planet_unload,
 };

@@ -2,10 +2,7 @@
  * report, "Mercury", figs. 1 to 6). */
 #include "scenes/planet_wide.h"
 
-#include "shade/color.h"
 #include "shade/diffuse.h"
-
-#include <stdlib.h>
 
 extern const planet_body WIDE(planet_mercury);
 
@@ -141,64 +138,6 @@ static void mercury_ground(const amb_fs_in *in, amb_fs_out *out)
 
 /* ---- scene ------------------------------------------------------------------------------------------------------ */
 
-/* Height, in texels, of a luminance difference of 1 such that every map gets the same relief, whatever its size and
- * contrast: slopes along u over 1/1024 of the circumference, between 45° south and north, have a given mean square. */
-static float relief_strength(const amb_texture *color)
-{
-    enum { COLUMNS = 1024, ROWS = 64 };
-    const float slope = 0.042f; /* root mean square */
-    amb_texture_info info = amb_texture_describe(color);
-    f32x lod = f_set(f_lane(f_max(f_log2(f_set((float)info.width / COLUMNS)), f_set(0.0f)), 0));
-    double sum = 0.0;
-    for (int y = 0; y < ROWS; y++)
-        for (int x = 0; x < COLUMNS; x += AMB_LANES) {
-            f32x u = (i_to_f(i_lane_index() + x) + 0.5f) / (float)COLUMNS,
-                 v = f_set(0.25f + ((float)y + 0.5f) / (2.0f * ROWS));
-            v4x a = amb_sample_2d_lod(color, &planet_sampler, v2x_of(u, v), lod);
-            v4x b = amb_sample_2d_lod(color, &planet_sampler, v2x_of(u + 1.0f / COLUMNS, v), lod);
-            f32x rise = color_luminance(v3x_sub(v4x_xyz(b), v4x_xyz(a)));
-            for (int i = 0; i < AMB_LANES; i++)
-                sum += (double)f_lane(rise, i) * (double)f_lane(rise, i);
-        }
-    float rise = __builtin_sqrtf((float)(sum / (COLUMNS * ROWS)));
-    return slope * ((float)info.width / COLUMNS) / amb_s_max(rise, 1e-4f);
-}
-
-static void mercury_unload(void *opaque)
-{
-    mercury_state *state = opaque;
-    if (!state)
-        return;
-    planet_unload(&state->planet);
-    amb_texture_close(&state->relief);
-    free(state);
-}
-
-static amb_status mercury_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
-{
-    mercury_state *s = calloc(1, sizeof *s);
-    *out = NULL;
-    if (!s)
-        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene mercury");
-    amb_status status = planet_load(assets, &s->planet, error);
-    if (status == AMB_OK)
-        status = amb_assets_texture(assets, "mercury/color", &s->color, error);
-    if (status == AMB_OK) {
-        amb_normal_map_options options = {.strength = relief_strength(s->color),
-                                          .octaves = 5,
-                                          .gain = 1.25f,
-                                          .wrap_u = true,
-                                          .longitude_latitude = true};
-        status = planet_normal_texture(context, s->color, &options, &s->relief, error);
-    }
-    if (status != AMB_OK) {
-        mercury_unload(s);
-        return status;
-    }
-    *out = s;
-    return AMB_OK;
-}
-
 static amb_status mercury_draw(const void *opaque, const void *params, const planet_view *view, double time,
                                amb_pass *pass, amb_error *error)
 {
@@ -210,7 +149,21 @@ static amb_status mercury_draw(const void *opaque, const void *params, const pla
     return p->show_planet ? amb_pass_draw(pass, &ground, error) : AMB_OK;
 }
 
-const planet_body WIDE(planet_mercury) = {mercury_load, mercury_unload, mercury_draw};
+const planet_body WIDE(planet_mercury) = {
+    .name = "mercury",
+    .state_bytes = sizeof(mercury_state),
+    .map = {{"mercury/color", offsetof(mercury_state, color)}},
+    .made = {{.offset = offsetof(mercury_state, relief),
+              .from = offsetof(mercury_state, color),
+              .slope = 0.042f,
+              .relief = {.octaves = 5, .gain = 1.25f, .wrap_u = true, .longitude_latitude = true}}},
+    .draw = mercury_draw,
+};
+
+static amb_status mercury_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error)
+{
+    return planet_load(&WIDE(planet_mercury), context, assets, state, error);
+}
 
 /* Once around, along the terminator, into the shadow, past sunrise at the limb, and over the full day side. */
 static const amb_camera_key mercury_keys[] = {
@@ -260,5 +213,5 @@ const amb_scene WIDE(amb_scene_mercury) = {
     .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
     .load = mercury_load,
     .frame = mercury_frame,
-    .unload = mercury_unload,
+    .unload = planet_unload,
 };

@@ -26,6 +26,7 @@ typedef struct planet_params {
     float tilt;                       /* degrees, of the axis toward +x */
     float exposure, stars;
     int samples;
+    int show; /* PLANET_SHOW_…; scenes without a PLANET_SHOW_ROW leave it 0 */
 } planet_params;
 #define PLANET_FIELD(type, name) offsetof(type, name)
 /* Rows for the table of a struct `type` whose first member is `planet`; defaults as given. */
@@ -90,6 +91,22 @@ typedef struct planet_params {
             "samples along a pixel's side"                                                                         \
     }
 
+/* What the picture shows: everything, or one part alone (without sky, clouds and, but for the last two, air). */
+enum {
+    PLANET_SHOW_BEAUTY,
+    PLANET_SHOW_ALBEDO,
+    PLANET_SHOW_NORMALS,
+    PLANET_SHOW_LIGHT,
+    PLANET_SHOW_ATTENUATION,
+    PLANET_SHOW_SCATTERING
+};
+extern const char *const planet_show_names[];
+#define PLANET_SHOW_ROW(type)                                                                                     \
+    {                                                                                                             \
+        "show", AMB_PARAM_CHOICE, "", 0, 0, {PLANET_SHOW_BEAUTY}, planet_show_names, offsetof(type, planet.show), \
+            "what the picture shows: all, or one part; attenuation and scattering are the air's"                  \
+    }
+
 /* How one frame sees a planet: the first member of every planet shader's uniforms. */
 typedef struct planet_view {
     m4 world_to_clip;
@@ -100,34 +117,11 @@ typedef struct planet_view {
     v3 to_sun, sun_rgb;                 /* unit; radiance of white that faces the sun */
     float sun_size, sun_glow;           /* of the disc: cosine of its radius (1: none), radiance relative to sun_rgb */
     float star_gain;
-    float time;
+    int show;
     const amb_mesh *sphere;
     const amb_texture *stars;
     int slot[CANVAS_MAX_AOVS];
 } planet_view;
-
-/* What every planet's state starts with. */
-typedef struct planet_state {
-    amb_mesh *sphere;
-    const amb_texture *stars;
-} planet_state;
-
-amb_status planet_load(amb_assets *assets, planet_state *state, amb_error *error);
-void planet_unload(planet_state *state);
-
-/* A normal map (RGBA16F, coded, z out) from the first channel or the luminance of level 0 of a texture. */
-amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
-                                 const amb_normal_map_options *options, amb_texture **out, amb_error *error);
-
-/* A body that scenes draw: its own scene, and the tour. State and parameter structs start with planet_state and
- * planet_params. */
-typedef struct planet_body {
-    amb_status (*load)(const amb_context *context, amb_assets *assets, void **state, amb_error *error);
-    void (*unload)(void *state);
-    /* Records everything but the background; `view` is the body's own: it is at the origin, its radius 1. */
-    amb_status (*draw)(const void *state, const void *params, const planet_view *view, double time, amb_pass *pass,
-                       amb_error *error);
-} planet_body;
 
 /* A flight around one body. */
 typedef struct planet_flight {
@@ -135,18 +129,62 @@ typedef struct planet_flight {
     size_t key_count;
     float vertical_fov; /* degrees */
 } planet_flight;
+extern const planet_flight planet_flight_ball, planet_flight_rings; /* around a planet; around one with rings */
 
-/* The whole of a one-body scene's frame: canvas, background by `background` (a full-screen draw whose uniforms are a
- * planet_view), the body. */
-amb_status planet_frame(const planet_body *body, const amb_aov *aovs, size_t aov_count, const planet_flight *flight,
-                        amb_draw background, const void *state, const amb_scene_job *job, amb_error *error);
+/* What every planet's state starts with. */
+typedef struct planet_state {
+    const struct planet_body *body;
+    amb_mesh *sphere;
+    const amb_texture *stars;
+} planet_state;
 
-/* Several assets at once. */
-typedef struct planet_map_name {
+/* An asset and where the state keeps it: a const amb_texture *. */
+typedef struct planet_map_row {
+    const char *asset;
+    size_t offset;
+} planet_map_row;
+/* A map that is made when a planet is loaded and belongs to its state: an amb_texture *, from other members of it. */
+typedef struct planet_made_row {
+    size_t offset, from;
+    size_t alpha;                  /* not 0: colours of `from`, with the first channel of this map in alpha */
+    amb_normal_map_options relief; /* alpha 0: a normal map of `from` with these options */
+    float slope;                   /* > 0: its strength is such that slopes' root mean square is this */
+} planet_made_row;
+enum { PLANET_MAX_MAPS = 8, PLANET_MAX_MADE = 3 };
+
+/* A body that scenes draw: its own scene, and the tour. State and parameter structs start with planet_state and
+ * planet_params. Everything but `draw` has a default: 0. */
+typedef struct planet_body {
     const char *name;
-    const amb_texture **map;
-} planet_map_name;
-amb_status planet_load_maps(amb_assets *assets, const planet_map_name *maps, size_t count, amb_error *error);
+    size_t state_bytes;
+    planet_map_row map[PLANET_MAX_MAPS];   /* ends at the first without a name */
+    planet_made_row made[PLANET_MAX_MADE]; /* in this order; ends at the first without an offset */
+    /* Records everything but the background; `view` is the body's own: it is at the origin, its radius 1. */
+    amb_status (*draw)(const void *state, const void *params, const planet_view *view, double time, amb_pass *pass,
+                       amb_error *error);
+    /* Of its own scene: a full-screen draw whose uniforms are a planet_view, outputs, flight. */
+    const amb_draw *background;
+    const amb_aov *aovs;
+    size_t aov_count;
+    const planet_flight *flight;
+} planet_body;
+
+/* Errors: those of assets, MEMORY. */
+amb_status planet_load(const planet_body *body, const amb_context *context, amb_assets *assets, void **state,
+                       amb_error *error);
+void planet_unload(void *state); /* NULL is allowed */
+
+/* The whole of a one-body scene's frame: canvas, background, the body. */
+amb_status planet_frame(const void *state, const amb_scene_job *job, amb_error *error);
+
+/* A normal map (RGBA16F, coded, z out) from level 0 of a texture; alpha holds the height: the first channel, or
+ * luminance times alpha. */
+amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
+                                 const amb_normal_map_options *options, amb_texture **out, amb_error *error);
+
+/* Colours (sRGB8_A8) of one texture, the first channel of another in alpha: one look-up for both. */
+amb_status planet_colour_texture(const amb_context *context, const amb_texture *colour, const amb_texture *alpha,
+                                 amb_texture **out, amb_error *error);
 
 /* The view of one frame; the camera flies `keys`, over and over from their last time on. */
 planet_view planet_view_at(const planet_state *state, const planet_params *params, const amb_scene_job *job,

@@ -146,7 +146,7 @@ static void planet_air_dome(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(v3x_scale(light, f_set(u->dome_gain)), f_set(0.0f));
 }
 
-/* Records the three draws; call it after everything on the planet. */
+/* Records the three draws, or the one that the view shows alone; call it after everything on the planet. */
 static amb_status planet_air_draw(amb_pass *pass, planet_air *u, amb_error *error)
 {
     u->view.shell = 1.0f;
@@ -159,9 +159,13 @@ static amb_status planet_air_draw(amb_pass *pass, planet_air *u, amb_error *erro
     scatter.label = "air, scattering";
     scatter.fragment = planet_air_scatter;
     scatter.blend[0] = AMB_BLEND_ADD;
-    amb_status status = amb_pass_draw(pass, &dim, error);
-    if (status == AMB_OK)
-        status = amb_pass_draw(pass, &scatter, error);
+    int show = u->view.show;
+    amb_status status = AMB_OK;
+    if (show == PLANET_SHOW_BEAUTY || show == PLANET_SHOW_ATTENUATION)
+        status = amb_pass_draw(pass, &dim, error);
+    if (status != AMB_OK || (show != PLANET_SHOW_BEAUTY && show != PLANET_SHOW_SCATTERING))
+        return status;
+    status = amb_pass_draw(pass, &scatter, error);
     u->view.shell = u->air.top;
     amb_draw dome = scatter;
     dome.label = "sky dome";

@@ -5,6 +5,7 @@
 
 #include "scenes/builtin/rings.h"
 #include "scenes/planet_wide.h"
+#include "shade/color.h"
 #include "shade/diffuse.h"
 #include "shade/specular.h"
 
@@ -92,8 +93,9 @@ typedef struct planet_surface {
     planet_surface_params look;
     const amb_texture *colour;
     const amb_texture *relief, *height, *gloss; /* NULL: none */
-    const amb_texture *detail;                  /* multiplied over the colour, finer; NULL: none */
-    const amb_texture *rings;                   /* opacity by radius in alpha; NULL: no shadow of rings */
+    const amb_texture *ground;                  /* what shimmers through the clouds of `colour`; NULL: nothing */
+    float ground_strength;
+    const amb_texture *rings; /* opacity by radius in alpha; NULL: no shadow of rings */
     float ring_shadow;
     /* An animated map: between the key frames `colour` and `next` everything moves along u by the velocity map. */
     const amb_texture *next, *velocity; /* NULL: a still map */
@@ -140,12 +142,9 @@ static void planet_surface_fragment(const amb_fs_in *in, amb_fs_out *out)
         p.uv = parallax_offset(p.uv, eye, planet_map(u->height, &p).x, k->parallax, 0.0f);
     }
     v3x albedo = planet_surface_colour(u, &p);
-    if (u->detail) {
-        planet_point finer = p;
-        finer.uv = v2x_scale(p.uv, f_set(3.0f));
-        finer.uv_dx = v2x_scale(p.uv_dx, f_set(3.0f));
-        finer.uv_dy = v2x_scale(p.uv_dy, f_set(3.0f));
-        albedo = v3x_mul(albedo, v3x_scale(v4x_xyz(planet_map(u->detail, &finer)), f_set(1.7f)));
+    if (u->ground) {
+        f32x below = color_luminance(v4x_xyz(planet_map(u->ground, &p)));
+        albedo = v3x_scale(albedo, 1.0f + u->ground_strength * (below - 0.3f));
     }
     v3x normal = u->relief ? planet_bumped(&p, planet_map(u->relief, &p), k->bump) : p.normal;
     f32x n_dot_v = v3x_dot(p.normal, p.to_eye), n_dot_l = v3x_dot(normal, to_sun);
@@ -165,7 +164,7 @@ static void planet_surface_fragment(const amb_fs_in *in, amb_fs_out *out)
     }
     planet_put_surface(view, out, &p, normal, albedo, 1.0f);
     planet_put(view, out, PLANET_LIGHT, light);
-    out->color[0] = v4x_of3(colour, f_set(1.0f));
+    out->color[0] = planet_shown(view, colour, albedo, normal, light);
 }
 
 AMB_INLINE amb_draw planet_surface_draw(const planet_surface *u)

@@ -117,6 +117,32 @@ AMB_INLINE void planet_put_surface(const planet_view *view, amb_fs_out *out, con
     planet_put(view, out, PLANET_ID, v3x_splat((v3){id, id, id}));
 }
 
+/* The picture's colour: everything, or the part that the view shows alone. */
+AMB_INLINE v4x planet_shown(const planet_view *view, v3x everything, v3x albedo, v3x normal, v3x light)
+{
+    v3x shown = everything;
+    switch (view->show) {
+    case PLANET_SHOW_ALBEDO:
+        shown = albedo;
+        break;
+    case PLANET_SHOW_NORMALS:
+        shown = normal_map_encode(normal);
+        break;
+    case PLANET_SHOW_LIGHT:
+        shown = light;
+        break;
+    case PLANET_SHOW_ATTENUATION:
+        shown = v3x_splat((v3){1, 1, 1});
+        break;
+    case PLANET_SHOW_SCATTERING:
+        shown = v3x_splat((v3){0, 0, 0});
+        break;
+    default:
+        break;
+    }
+    return v4x_of3(shown, f_set(1.0f));
+}
+
 /* Stars by direction, and the sun's disc with a darkened limb. */
 AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
 {
@@ -142,7 +168,7 @@ AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(light, f_set(1.0f));
 }
 
-/* A full-screen draw of the background for planet_frame; only colour is written. */
+/* A full-screen draw of the background, for planet_body; only colour is written. */
 static const amb_draw planet_background_draw = {.label = "stars",
                                                 .lanes = AMB_LANES,
                                                 .fragment = planet_background,

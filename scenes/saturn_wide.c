@@ -2,8 +2,6 @@
 #include "scenes/planet_rings_wide.h"
 #include "scenes/planet_surface_wide.h"
 
-#include <stdlib.h>
-
 extern const planet_body WIDE(planet_saturn);
 
 typedef struct saturn_params {
@@ -53,6 +51,7 @@ static const amb_param saturn_table[] = {
      offsetof(saturn_params, shadow_sharpness),
      "of the planet's shadow on the rings"},
     {"rings", AMB_PARAM_BOOL, "", 0, 0, {1}, NULL, offsetof(saturn_params, show_rings), "draw the rings"},
+    PLANET_SHOW_ROW(saturn_params),
 };
 static const amb_aov saturn_aovs[] = {PLANET_AOV_ROWS};
 
@@ -60,33 +59,6 @@ typedef struct saturn_state {
     planet_state planet;
     const amb_texture *colour, *rings, *scatter;
 } saturn_state;
-
-static void saturn_unload(void *opaque)
-{
-    saturn_state *state = opaque;
-    planet_unload(&state->planet);
-    free(state);
-}
-
-static amb_status saturn_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
-{
-    saturn_state *s = calloc(1, sizeof *s);
-    *out = NULL;
-    (void)context;
-    if (!s)
-        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene saturn");
-    const planet_map_name maps[] = {
-        {"saturn/color", &s->colour}, {"saturn/rings", &s->rings}, {"saturn/scatter", &s->scatter}};
-    amb_status status = planet_load(assets, &s->planet, error);
-    if (status == AMB_OK)
-        status = planet_load_maps(assets, maps, sizeof maps / sizeof *maps, error);
-    if (status != AMB_OK) {
-        saturn_unload(s);
-        return status;
-    }
-    *out = s;
-    return AMB_OK;
-}
 
 static amb_status saturn_draw(const void *opaque, const void *params, const planet_view *view, double time,
                               amb_pass *pass, amb_error *error)
@@ -113,19 +85,22 @@ static amb_status saturn_draw(const void *opaque, const void *params, const plan
     return status;
 }
 
-const planet_body WIDE(planet_saturn) = {saturn_load, saturn_unload, saturn_draw};
-
-static const amb_camera_key saturn_keys[] = {
-    {0.0f, {-2.6f, 1.35f, 4.6f}, {0, 0, 0}, {0, 1, 0}},    {10.0f, {2.0f, 0.7f, 4.9f}, {0, 0, 0}, {0, 1, 0}},
-    {20.0f, {4.2f, -0.5f, 2.2f}, {0.2f, 0, 0}, {0, 1, 0}}, {30.0f, {0.9f, -1.2f, 4.6f}, {0, 0, 0}, {0, 1, 0}},
-    {40.0f, {-2.6f, 1.35f, 4.6f}, {0, 0, 0}, {0, 1, 0}},
+const planet_body WIDE(planet_saturn) = {
+    .name = "saturn",
+    .state_bytes = sizeof(saturn_state),
+    .map = {{"saturn/color", offsetof(saturn_state, colour)},
+            {"saturn/rings", offsetof(saturn_state, rings)},
+            {"saturn/scatter", offsetof(saturn_state, scatter)}},
+    .draw = saturn_draw,
+    .background = &planet_background_draw,
+    .aovs = saturn_aovs,
+    .aov_count = PLANET_AOVS,
+    .flight = &planet_flight_rings,
 };
-static const planet_flight saturn_flight = {saturn_keys, sizeof saturn_keys / sizeof *saturn_keys, 40.0f};
 
-static amb_status saturn_frame(const void *state, const amb_scene_job *job, amb_error *error)
+static amb_status saturn_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error)
 {
-    return planet_frame(&WIDE(planet_saturn), saturn_aovs, PLANET_AOVS, &saturn_flight, planet_background_draw, state,
-                        job, error);
+    return planet_load(&WIDE(planet_saturn), context, assets, state, error);
 }
 
 const amb_scene WIDE(amb_scene_saturn) = {
@@ -137,6 +112,6 @@ const amb_scene WIDE(amb_scene_saturn) = {
     .aov_count = PLANET_AOVS,
     .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
     .load = saturn_load,
-    .frame = saturn_frame,
-    .unload = saturn_unload,
+    .frame = planet_frame,
+    .unload = planet_unload,
 };

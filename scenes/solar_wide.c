@@ -80,8 +80,7 @@ static void solar_unload(void *opaque)
 {
     solar_state *state = opaque;
     for (int i = 0; i < SOLAR_BODIES; i++) {
-        if (state->body[i])
-            bodies[i].body->unload(state->body[i]);
+        planet_unload(state->body[i]);
         free(state->params[i]);
     }
     free(state);
@@ -105,7 +104,7 @@ static amb_status solar_load(const amb_context *context, amb_assets *assets, voi
         if (i == 0) /* beside lit planets it outshines them */
             status = amb_params_set(params, s->params[0], "scene solar", "radiance", "8", error);
         if (status == AMB_OK)
-            status = bodies[i].body->load(context, assets, &s->body[i], error);
+            status = planet_load(bodies[i].body, context, assets, &s->body[i], error);
     }
     if (status != AMB_OK) {
         solar_unload(s);

@@ -4,8 +4,6 @@
 
 #include <ambiance/noise.h>
 
-#include <stdlib.h>
-
 extern const planet_body WIDE(planet_sun);
 
 typedef struct sun_params {
@@ -23,6 +21,7 @@ static const amb_param sun_table[] = {
     {"corona_reach", AMB_PARAM_FLOAT, "radii", 0.01f, 5, {0.30f}, NULL, FIELD(corona_reach), "where it fell to 1/e"},
     {"streamers", AMB_PARAM_FLOAT, "", 0, 1, {0.75f}, NULL, FIELD(streamers), "contrast of the corona's rays"},
     {"boil", AMB_PARAM_FLOAT, "", 0, 10, {1}, NULL, FIELD(boil), "speed of the changing granules and rays"},
+    PLANET_SHOW_ROW(sun_params),
 };
 #undef FIELD
 static const amb_aov sun_aovs[] = {PLANET_AOV_ROWS};
@@ -89,32 +88,6 @@ static void sun_corona(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(v3x_scale(colour, light), f_set(0.0f));
 }
 
-static void sun_unload(void *opaque)
-{
-    sun_state *state = opaque;
-    planet_unload(&state->planet);
-    free(state);
-}
-
-static amb_status sun_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
-{
-    sun_state *s = calloc(1, sizeof *s);
-    *out = NULL;
-    (void)context;
-    if (!s)
-        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene sun");
-    const planet_map_name maps[] = {{"sun/color", &s->colour}};
-    amb_status status = planet_load(assets, &s->planet, error);
-    if (status == AMB_OK)
-        status = planet_load_maps(assets, maps, 1, error);
-    if (status != AMB_OK) {
-        sun_unload(s);
-        return status;
-    }
-    *out = s;
-    return AMB_OK;
-}
-
 static amb_status sun_draw(const void *opaque, const void *params, const planet_view *view, double time, amb_pass *pass,
                            amb_error *error)
 {
@@ -138,8 +111,6 @@ static amb_status sun_draw(const void *opaque, const void *params, const planet_
     return status == AMB_OK ? amb_pass_draw(pass, &disc, error) : status;
 }
 
-const planet_body WIDE(planet_sun) = {sun_load, sun_unload, sun_draw};
-
 static const amb_camera_key sun_keys[] = {
     {0.0f, {-0.9f, 0.3f, 4.2f}, {0, 0, 0}, {0, 1, 0}},         {10.0f, {1.3f, 0.6f, 3.4f}, {0, 0, 0}, {0, 1, 0}},
     {20.0f, {1.2f, 0.2f, 1.9f}, {-0.35f, 0.1f, 0}, {0, 1, 0}}, {30.0f, {-0.4f, -0.6f, 3.6f}, {0, 0, 0}, {0, 1, 0}},
@@ -147,10 +118,20 @@ static const amb_camera_key sun_keys[] = {
 };
 static const planet_flight sun_flight = {sun_keys, sizeof sun_keys / sizeof *sun_keys, 42.0f};
 
-static amb_status sun_frame(const void *state, const amb_scene_job *job, amb_error *error)
+const planet_body WIDE(planet_sun) = {
+    .name = "sun",
+    .state_bytes = sizeof(sun_state),
+    .map = {{"sun/color", offsetof(sun_state, colour)}},
+    .draw = sun_draw,
+    .background = &planet_background_draw,
+    .aovs = sun_aovs,
+    .aov_count = PLANET_AOVS,
+    .flight = &sun_flight,
+};
+
+static amb_status sun_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error)
 {
-    return planet_frame(&WIDE(planet_sun), sun_aovs, PLANET_AOVS, &sun_flight, planet_background_draw, state, job,
-                        error);
+    return planet_load(&WIDE(planet_sun), context, assets, state, error);
 }
 
 const amb_scene WIDE(amb_scene_sun) = {
@@ -162,6 +143,6 @@ const amb_scene WIDE(amb_scene_sun) = {
     .aov_count = PLANET_AOVS,
     .post = "bloom:threshold=1.0,intensity=0.35;display:curve=filmic",
     .load = sun_load,
-    .frame = sun_frame,
-    .unload = sun_unload,
+    .frame = planet_frame,
+    .unload = planet_unload,
 };

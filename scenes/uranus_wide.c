@@ -2,8 +2,6 @@
 #include "scenes/planet_rings_wide.h"
 #include "scenes/planet_surface_wide.h"
 
-#include <stdlib.h>
-
 extern const planet_body WIDE(planet_uranus);
 
 typedef struct uranus_params {
@@ -35,6 +33,7 @@ static const amb_param uranus_table[] = {
      offsetof(uranus_params, ring_brightness),
      "factor on the light of the rings"},
     {"rings", AMB_PARAM_BOOL, "", 0, 0, {1}, NULL, offsetof(uranus_params, show_rings), "draw the rings"},
+    PLANET_SHOW_ROW(uranus_params),
 };
 static const amb_aov uranus_aovs[] = {PLANET_AOV_ROWS};
 
@@ -42,32 +41,6 @@ typedef struct uranus_state {
     planet_state planet;
     const amb_texture *colour, *rings;
 } uranus_state;
-
-static void uranus_unload(void *opaque)
-{
-    uranus_state *state = opaque;
-    planet_unload(&state->planet);
-    free(state);
-}
-
-static amb_status uranus_load(const amb_context *context, amb_assets *assets, void **out, amb_error *error)
-{
-    uranus_state *s = calloc(1, sizeof *s);
-    *out = NULL;
-    (void)context;
-    if (!s)
-        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for scene uranus");
-    const planet_map_name maps[] = {{"uranus/color", &s->colour}, {"uranus/rings", &s->rings}};
-    amb_status status = planet_load(assets, &s->planet, error);
-    if (status == AMB_OK)
-        status = planet_load_maps(assets, maps, sizeof maps / sizeof *maps, error);
-    if (status != AMB_OK) {
-        uranus_unload(s);
-        return status;
-    }
-    *out = s;
-    return AMB_OK;
-}
 
 static amb_status uranus_draw(const void *opaque, const void *params, const planet_view *view, double time,
                               amb_pass *pass, amb_error *error)
@@ -86,19 +59,20 @@ static amb_status uranus_draw(const void *opaque, const void *params, const plan
     return status;
 }
 
-const planet_body WIDE(planet_uranus) = {uranus_load, uranus_unload, uranus_draw};
-
-static const amb_camera_key uranus_keys[] = {
-    {0.0f, {-2.6f, 1.35f, 4.6f}, {0, 0, 0}, {0, 1, 0}},    {10.0f, {2.0f, 0.7f, 4.9f}, {0, 0, 0}, {0, 1, 0}},
-    {20.0f, {4.2f, -0.5f, 2.2f}, {0.2f, 0, 0}, {0, 1, 0}}, {30.0f, {0.9f, -1.2f, 4.6f}, {0, 0, 0}, {0, 1, 0}},
-    {40.0f, {-2.6f, 1.35f, 4.6f}, {0, 0, 0}, {0, 1, 0}},
+const planet_body WIDE(planet_uranus) = {
+    .name = "uranus",
+    .state_bytes = sizeof(uranus_state),
+    .map = {{"uranus/color", offsetof(uranus_state, colour)}, {"uranus/rings", offsetof(uranus_state, rings)}},
+    .draw = uranus_draw,
+    .background = &planet_background_draw,
+    .aovs = uranus_aovs,
+    .aov_count = PLANET_AOVS,
+    .flight = &planet_flight_rings,
 };
-static const planet_flight uranus_flight = {uranus_keys, sizeof uranus_keys / sizeof *uranus_keys, 40.0f};
 
-static amb_status uranus_frame(const void *state, const amb_scene_job *job, amb_error *error)
+static amb_status uranus_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error)
 {
-    return planet_frame(&WIDE(planet_uranus), uranus_aovs, PLANET_AOVS, &uranus_flight, planet_background_draw, state,
-                        job, error);
+    return planet_load(&WIDE(planet_uranus), context, assets, state, error);
 }
 
 const amb_scene WIDE(amb_scene_uranus) = {
@@ -110,6 +84,6 @@ const amb_scene WIDE(amb_scene_uranus) = {
     .aov_count = PLANET_AOVS,
     .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
     .load = uranus_load,
-    .frame = uranus_frame,
-    .unload = uranus_unload,
+    .frame = planet_frame,
+    .unload = planet_unload,
 };

@@ -30,20 +30,34 @@ amb_status amb_builtin_earth_water(const amb_context *context, amb_texture **out
 amb_status amb_builtin_earth_night(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_earth_clouds(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_venus_colour(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_venus_surface(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_mars_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_mars_height(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_pluto_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_pluto_gloss(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_jupiter_colour(const amb_context *context, amb_texture **out, amb_error *error);
-amb_status amb_builtin_jupiter_colour1(const amb_context *context, amb_texture **out, amb_error *error);
-amb_status amb_builtin_jupiter_colour2(const amb_context *context, amb_texture **out, amb_error *error);
-amb_status amb_builtin_jupiter_colour3(const amb_context *context, amb_texture **out, amb_error *error);
-amb_status amb_builtin_jupiter_colour4(const amb_context *context, amb_texture **out, amb_error *error);
-amb_status amb_builtin_jupiter_velocity(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_saturn_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_uranus_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_neptune_colour(const amb_context *context, amb_texture **out, amb_error *error);
 amb_status amb_builtin_sun_colour(const amb_context *context, amb_texture **out, amb_error *error);
+
+/* Maps made from a map, of its size. Jupiter's key frames of drifting bands and their drift, from the still map (that
+ * is key frame 0); brightness, 0…1; Mars's coded normals from its height. */
+amb_status amb_builtin_jupiter_key1(const amb_context *context, const amb_texture *still, amb_texture **out,
+                                    amb_error *error);
+amb_status amb_builtin_jupiter_key2(const amb_context *context, const amb_texture *still, amb_texture **out,
+                                    amb_error *error);
+amb_status amb_builtin_jupiter_key3(const amb_context *context, const amb_texture *still, amb_texture **out,
+                                    amb_error *error);
+amb_status amb_builtin_jupiter_key4(const amb_context *context, const amb_texture *still, amb_texture **out,
+                                    amb_error *error);
+amb_status amb_builtin_jupiter_velocity(const amb_context *context, const amb_texture *still, amb_texture **out,
+                                        amb_error *error);
+amb_status amb_builtin_brightness(const amb_context *context, const amb_texture *colour, amb_texture **out,
+                                  amb_error *error);
+amb_status amb_builtin_mars_relief(const amb_context *context, const amb_texture *height, amb_texture **out,
+                                   amb_error *error);
+
 /* Saturn's rings by radius (rings.h), 4096×1: tint and opacity; back-, forward- and unlit-scattered intensity in r, g,
  * b. */
 amb_status amb_builtin_saturn_rings(const amb_context *context, amb_texture **out, amb_error *error);

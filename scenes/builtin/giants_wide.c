@@ -4,20 +4,10 @@
 #include "scenes/builtin/planet_noise.h"
 
 v4x WIDE(amb_jupiter_colour)(v3x direction, const void *user);
-v4x WIDE(amb_jupiter_velocity)(v3x direction, const void *user);
 v4x WIDE(amb_saturn_colour)(v3x direction, const void *user);
 v4x WIDE(amb_uranus_colour)(v3x direction, const void *user);
 v4x WIDE(amb_neptune_colour)(v3x direction, const void *user);
 v4x WIDE(amb_sun_colour)(v3x direction, const void *user);
-
-/* Turns a direction about the poles toward -u of the painted map: a field of turned directions is the field moved
- * toward +u, which is east on a planet. */
-static v3x turn(v3x d, f32x radians)
-{
-    f32x s, c;
-    f_sincos(radians, &s, &c);
-    return (v3x){d.x * c + d.z * s, d.y, d.z * c - d.x * s};
-}
 
 /* A band table: colours at sines of latitude, joined by smooth steps. */
 typedef struct band {
@@ -47,8 +37,8 @@ static const band jupiter_bands[] = {
 };
 
 /* The Great Red Spot: place and semi-axes of its oval. */
-static const v3 spot_centre = {0.515f, -0.37f, -0.773f};
-static const v2 spot_size = {0.235f, 0.125f};
+static const v3 spot_centre = {-0.677f, -0.37f, -0.636f};
+static const v2 spot_size = {JUPITER_SPOT_WIDE, JUPITER_SPOT_HIGH};
 
 typedef struct spot_place {
     v3 east, north;
@@ -64,26 +54,6 @@ static spot_place spot_at(v3x d)
     at.r2 = at.x * at.x + at.y * at.y;
     at.front = f_sel(v3x_dot(d, v3x_splat(spot_centre)) > 0.0f, f_set(1.0f), f_set(0.0f));
     return at;
-}
-
-/* Angular speed of the jets, radians a key frame, eastward: belts and zones shear past each other, and come to rest
- * around the spot, which stays where it is. */
-static f32x jet_speed(v3x direction)
-{
-    f32x latitude = direction.y, sine, cosine;
-    f_sincos(latitude * 15.0f, &sine, &cosine);
-    spot_place spot = spot_at(direction);
-    f32x moves = 1.0f - spot.front * (1.0f - f_smoothstep(f_set(1.0f), f_set(3.5f), spot.r2));
-    f32x jets = planet_bump(latitude, 0.0f, 0.12f) + 0.5f * cosine * (1.0f - f_abs(latitude));
-    return JUPITER_KEY_DRIFT * jets * moves;
-}
-
-v4x WIDE(amb_jupiter_velocity)(v3x direction, const void *user)
-{
-    (void)user;
-    /* 128 of 255 is still, and 127 steps are twice the drift: what the scene reads it with. */
-    f32x v = (128.0f + jet_speed(direction) * (127.0f / (2.0f * JUPITER_KEY_DRIFT))) * (1.0f / 255.0f);
-    return (v4x){v, v, v, f_set(1.0f)};
 }
 
 /* Everything in the spot turns. */
@@ -116,38 +86,12 @@ static jupiter_flow flow_of(v3x d, uint32_t seed)
     };
 }
 
-/* Two flows, each carried along by the jets over JUPITER_KEYS key frames and then begun anew while it is not seen: the
- * last key leads on to the first without a step back (N. Max and B. Becker, "Flow Visualization Using Moving Textures",
- * 1995). Weights are such that the sum's contrast stays. */
-static jupiter_flow jupiter_flow_at(v3x d, float key)
-{
-    jupiter_flow sum = {f_set(0.0f), f_set(0.0f), f_set(0.0f)};
-    f32x speed = jet_speed(d);
-    float weight[2], age[2];
-    for (int i = 0; i < 2; i++) {
-        age[i] = key + 2.0f * (float)i;
-        age[i] -= age[i] >= JUPITER_KEYS ? (float)JUPITER_KEYS : 0.0f;
-        weight[i] = age[i] < 0.5f * JUPITER_KEYS ? age[i] : JUPITER_KEYS - age[i];
-    }
-    float length = __builtin_sqrtf(weight[0] * weight[0] + weight[1] * weight[1]);
-    for (int i = 0; i < 2; i++) {
-        if (!(weight[i] > 0.0f))
-            continue;
-        float share = weight[i] / length;
-        jupiter_flow one = flow_of(turn(d, speed * (age[i] - 0.5f * JUPITER_KEYS)), 200u + 50u * (uint32_t)i);
-        sum.north = sum.north + one.north * share;
-        sum.festoons = sum.festoons + one.festoons * share;
-        sum.threads = sum.threads + one.threads * share;
-    }
-    return sum;
-}
-
 v4x WIDE(amb_jupiter_colour)(v3x direction, const void *user)
 {
-    const giant_frame *frame = user;
+    (void)user;
     f32x inside;
     v3x d = spot_turn(direction, &inside);
-    jupiter_flow flow = jupiter_flow_at(d, frame ? frame->key : 0.0f);
+    jupiter_flow flow = flow_of(d, 200u);
     f32x y = d.y + flow.north, calm = f_smoothstep(f_set(0.95f), f_set(0.55f), f_abs(y));
     v3x colour =
         bands(jupiter_bands, (int)(sizeof jupiter_bands / sizeof *jupiter_bands), y + flow.festoons * 0.018f * calm);

@@ -1,6 +1,5 @@
 #include "core/dispatch.h"
 #include "scenes/builtin/builtin.h"
-#include "scenes/builtin/giants.h"
 #include "scenes/builtin/paint.h"
 
 enum { MAP_WIDTH = 2048, MAP_HEIGHT = 1024 };
@@ -20,32 +19,13 @@ MAP(earth_water, AMB_TEXEL_R8)
 MAP(earth_night, AMB_TEXEL_SRGB8_A8)
 MAP(earth_clouds, AMB_TEXEL_R16F)
 MAP(venus_colour, AMB_TEXEL_SRGB8_A8)
+MAP(venus_surface, AMB_TEXEL_SRGB8_A8)
 MAP(mars_colour, AMB_TEXEL_SRGB8_A8)
 MAP(mars_height, AMB_TEXEL_R16F)
 MAP(pluto_colour, AMB_TEXEL_SRGB8_A8)
 MAP(pluto_gloss, AMB_TEXEL_R8)
-MAP(jupiter_velocity, AMB_TEXEL_R8)
+MAP(jupiter_colour, AMB_TEXEL_SRGB8_A8)
 MAP(saturn_colour, AMB_TEXEL_SRGB8_A8)
 MAP(uranus_colour, AMB_TEXEL_SRGB8_A8)
 MAP(neptune_colour, AMB_TEXEL_SRGB8_A8)
 MAP(sun_colour, AMB_TEXEL_SRGB8_A8)
-
-AMB_DECLARE_WIDE(v4x, amb_jupiter_colour, (v3x direction, const void *user));
-
-static amb_status jupiter_key(const amb_context *context, int key, amb_texture **out, amb_error *error)
-{
-    giant_frame frame = {(float)key};
-    return amb_map_paint(context, MAP_WIDTH, MAP_HEIGHT, 1, AMB_DISPATCH(amb_context_isa(context), amb_jupiter_colour),
-                         &frame, AMB_TEXEL_SRGB8_A8, out, error);
-}
-/* Key frames of the drifting bands; the first is the still map. */
-#define KEY(NAME, NUMBER)                                                                          \
-    amb_status amb_builtin_##NAME(const amb_context *context, amb_texture **out, amb_error *error) \
-    {                                                                                              \
-        return jupiter_key(context, NUMBER, out, error);                                           \
-    }
-KEY(jupiter_colour, 0)
-KEY(jupiter_colour1, 1)
-KEY(jupiter_colour2, 2)
-KEY(jupiter_colour3, 3)
-KEY(jupiter_colour4, 4)

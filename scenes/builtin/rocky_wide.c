@@ -1,7 +1,8 @@
-/* Venus, Mars and Pluto in colour; Mars in height, Pluto's ice in gloss. Linear albedos. */
+/* Venus, its ground, Mars and Pluto in colour; Mars in height, Pluto's ice in gloss. Linear albedos. */
 #include "scenes/builtin/planet_noise.h"
 
 v4x WIDE(amb_venus_colour)(v3x direction, const void *user);
+v4x WIDE(amb_venus_surface)(v3x direction, const void *user);
 v4x WIDE(amb_mars_colour)(v3x direction, const void *user);
 v4x WIDE(amb_mars_height)(v3x direction, const void *user);
 v4x WIDE(amb_pluto_colour)(v3x direction, const void *user);
@@ -21,6 +22,18 @@ v4x WIDE(amb_venus_colour)(v3x direction, const void *user)
     f32x fine = planet_fbm((v3x){swept.x * 6.0f, swept.y * 21.0f, swept.z * 6.0f}, 104, 6);
     f32x bright = f_saturate(0.55f + decks * 0.42f + fine * 0.10f + latitude * latitude * 0.18f);
     v3x colour = planet_mix(v3x_splat((v3){0.46f, 0.27f, 0.095f}), (v3){0.86f, 0.70f, 0.42f}, bright);
+    return v4x_of3(colour, f_set(1.0f));
+}
+
+/* Highlands of bright ridges in dark plains of lava. */
+v4x WIDE(amb_venus_surface)(v3x direction, const void *user)
+{
+    (void)user;
+    v3x bent = planet_swirl(planet_swirl(direction, 2.0f, 0.10f, 105), 7.0f, 0.02f, 106);
+    f32x high = f_smoothstep(f_set(-0.1f), f_set(0.6f), planet_fbm(v3x_scale(bent, f_set(1.7f)), 107, 8));
+    f32x folds = 1.0f - f_abs(planet_fbm(v3x_scale(bent, f_set(8.0f)), 108, 7)) * 1.6f;
+    f32x bright = f_saturate(0.22f + 0.35f * high + 0.45f * high * f_max(folds, f_set(0.0f)));
+    v3x colour = planet_mix(v3x_splat((v3){0.16f, 0.055f, 0.010f}), (v3){0.80f, 0.52f, 0.20f}, bright);
     return v4x_of3(colour, f_set(1.0f));
 }
 
