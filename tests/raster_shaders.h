@@ -16,7 +16,9 @@ typedef struct raster_test_uniforms {
     float depth;        /* written by the depth-writing shader: depth · this */
     const float *table; /* of the table shader: four floats a pixel */
     int table_width;
-    int holes; /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
+    int targets; /* that the coded shaders write, at least two */
+    int hostile; /* 0…8: how many of 8 of their values are of RASTER_TEST_HOSTILE instead */
+    int holes;   /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
 } raster_test_uniforms;
 
 typedef struct raster_test_shaders {
@@ -33,6 +35,11 @@ typedef struct raster_test_shaders {
 
 /* A small exact number of a primitive and a channel: -¼…1, without rounding. */
 #define RASTER_TEST_CODE(primitive, salt) ((float)(((primitive)*37 + (salt)*11 + 5) & 31) * 0.0390625f - 0.25f)
+
+#define RASTER_TEST_HOSTILE                                               \
+    {                                                                     \
+        NAN, INFINITY, -INFINITY, 1e30f, -1e-40f, 1e-42f, 70000.0f, -0.0f \
+    }
 
 const raster_test_shaders *raster_test_shaders_of(amb_isa isa);
 

@@ -1,5 +1,7 @@
 #include "tests/raster_shaders.h"
 
+#include <math.h>
+
 #define raster_test_shaders_get WIDE(raster_test_shaders_get)
 const raster_test_shaders *raster_test_shaders_get(void);
 
@@ -45,25 +47,30 @@ static void screen(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = (v4x){in->x, in->y, in->depth, f_set(1.0f)};
 }
 
-static f32x code(i32x primitive, int salt)
+static f32x code(i32x primitive, int salt, int hostile)
 {
-    return i_to_f((primitive * 37 + (salt * 11 + 5)) & 31) * 0.0390625f - 0.25f;
+    static const float value[8] = RASTER_TEST_HOSTILE;
+    f32x plain = i_to_f((primitive * 37 + (salt * 11 + 5)) & 31) * 0.0390625f - 0.25f;
+    if (hostile == 0)
+        return plain;
+    return f_sel(((primitive * 7 + salt * 3) & 7) < hostile, f_gather(value, (primitive + salt) & 7), plain);
 }
 
 static void coded(const amb_fs_in *in, amb_fs_out *out)
 {
     const raster_test_uniforms *u = in->uniforms;
-    for (int i = 0; i < 2; i++)
-        out->color[i] = (v4x){code(in->primitive, 4 * i), code(in->primitive, 4 * i + 1),
-                              code(in->primitive, 4 * i + 2), code(in->primitive, 4 * i + 3)};
+    for (int i = 0; i < 2 || i < u->targets; i++)
+        out->color[i] = (v4x){code(in->primitive, 4 * i, u->hostile), code(in->primitive, 4 * i + 1, u->hostile),
+                              code(in->primitive, 4 * i + 2, u->hostile), code(in->primitive, 4 * i + 3, u->hostile)};
     if (u->holes > 0)
         out->live &= ((f_to_i(in->x) + f_to_i(in->y) * 2 + in->primitive) & 3) >= u->holes;
 }
 
 static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
 {
+    const raster_test_uniforms *u = in->uniforms;
     coded(in, out);
-    out->depth = code(in->primitive, 9);
+    out->depth = code(in->primitive, 9, u->hostile);
 }
 
 static void table(const amb_fs_in *in, amb_fs_out *out)
