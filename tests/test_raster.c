@@ -93,58 +93,81 @@ static void add_pixel(void *user, int x, int y)
     c->sum[y * c->width + x] += (float)(c->triangle % 61 + 1);
 }
 
-/* Draws them in one additive pass; returns how many pixels differ from the truth. */
-static int differing_pixels(const amb_context *context, const raster_test_vertex *vertex, int triangles, int width,
-                            int height, int tile_size)
-{
-    const raster_test_shaders *shaders = raster_test_shaders_of(amb_context_isa(context));
-    raster_test_uniforms uniforms = {.vertex = vertex};
-    amb_image *image = NULL;
-    amb_pass *pass = NULL;
-    assert_int_equal(amb_image_create(width, height, 2, &image, NULL), AMB_OK);
-    amb_target target = {.color = {image}};
-    assert_int_equal(raster_pass_begin(context, &target, tile_size, RASTER_BATCH_BYTES, &pass, NULL), AMB_OK);
-    amb_draw draw = {.lanes = shaders->lanes,
-                     .vertex = shaders->vertex,
-                     .fragment = shaders->one,
-                     .uniforms = &uniforms,
-                     .uniforms_size = sizeof uniforms,
-                     .varying_floats = 4,
-                     .count = (uint32_t)triangles * 3,
-                     .blend = {AMB_BLEND_ADD}};
-    assert_int_equal(amb_pass_draw(pass, &draw, NULL), AMB_OK);
-    assert_int_equal(amb_pass_finish(&pass, NULL, NULL), AMB_OK);
+/* D3D's standard positions, sixteenths of a pixel from the centre, by log2 of their number. */
+static const int8_t positions[4][16] = {
+    {0, 0}, {4, 4, -4, -4}, {-2, -6, 6, -2, -6, 2, 2, 6}, {1, -3, -1, 3, 5, 1, -3, -5, -5, 5, -7, -1, 3, 7, 7, -7}};
 
-    canvas truth = {.width = width, .height = height};
-    truth.count = calloc((size_t)(width * height), sizeof *truth.count);
-    truth.sum = calloc((size_t)(width * height), sizeof *truth.sum);
+typedef struct setting {
+    const amb_context *context;
+    int width, height, tile_size, log_samples;
+} setting;
+
+/* Counts, in a truth's canvas, the samples that every triangle owns. */
+static canvas count_truth(const setting *s, const raster_test_vertex *vertex, int triangles)
+{
+    canvas truth = {.width = s->width, .height = s->height};
+    truth.count = calloc((size_t)(s->width * s->height), sizeof *truth.count);
+    truth.sum = calloc((size_t)(s->width * s->height), sizeof *truth.sum);
     for (int i = 0; i < triangles; i++) {
         float clip[3][4];
+        truth_triangle piece[7];
         for (int k = 0; k < 3; k++)
             memcpy(clip[k], &vertex[i * 3 + k].clip, sizeof clip[k]);
         truth.triangle = i;
-        truth_draw(clip, width, height, add_pixel, &truth);
+        int pieces = truth_clip((const float(*)[4])clip, s->width, s->height, 1, piece);
+        for (int p = 0; p < pieces; p++)
+            for (int n = 0; n < 1 << s->log_samples; n++)
+                truth_fill_sample(&piece[p], s->width, s->height, positions[s->log_samples][2 * n],
+                                  positions[s->log_samples][2 * n + 1], add_pixel, &truth);
     }
+    return truth;
+}
+
+/* Draws triangles in one additive pass: how often each, and the sum of their numbers. */
+static amb_image *draw_added(const setting *s, amb_draw draw)
+{
+    const raster_test_shaders *shaders = raster_test_shaders_of(amb_context_isa(s->context));
+    amb_image *image = NULL;
+    amb_pass *pass = NULL;
+    assert_int_equal(amb_image_create(s->width, s->height, 2, &image, NULL), AMB_OK);
+    amb_target target = {.color = {image}, .samples = 1 << s->log_samples};
+    assert_int_equal(raster_pass_begin(s->context, &target, s->tile_size, RASTER_BATCH_BYTES, &pass, NULL), AMB_OK);
+    draw.lanes = shaders->lanes, draw.vertex = shaders->vertex, draw.fragment = shaders->one;
+    draw.uniforms_size = sizeof(raster_test_uniforms);
+    draw.varying_floats = 4;
+    draw.blend[0] = AMB_BLEND_ADD;
+    assert_int_equal(amb_pass_draw(pass, &draw, NULL), AMB_OK);
+    assert_int_equal(amb_pass_finish(&pass, NULL, NULL), AMB_OK);
+    return image;
+}
+
+/* How many pixels differ from the truth? Sums of small whole numbers, over 1, 2, 4 or 8, are exact. */
+static int differing_pixels(const setting *s, const raster_test_vertex *vertex, int triangles)
+{
+    raster_test_uniforms uniforms = {.vertex = vertex};
+    amb_image *image = draw_added(s, (amb_draw){.uniforms = &uniforms, .count = (uint32_t)triangles * 3});
+    canvas truth = count_truth(s, vertex, triangles);
     int differences = 0;
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
-            differences += amb_image_row(image, 0, y)[x] != truth.count[y * width + x] ||
-                           amb_image_row(image, 1, y)[x] != truth.sum[y * width + x];
+    float samples = (float)(1 << s->log_samples);
+    for (int y = 0; y < s->height; y++)
+        for (int x = 0; x < s->width; x++)
+            differences += amb_image_row(image, 0, y)[x] != truth.count[y * s->width + x] / samples ||
+                           amb_image_row(image, 1, y)[x] != truth.sum[y * s->width + x] / samples;
     free(truth.count);
     free(truth.sum);
     amb_image_close(&image);
     return differences;
 }
 
-static int random_batch(const amb_context *context, int kind, int triangles, int width, int height, int tile_size)
+static int random_batch(const setting *s, int kind, int triangles)
 {
     raster_test_vertex *vertex = calloc((size_t)triangles * 3, sizeof *vertex);
     for (int i = 0; i < triangles; i++) {
-        random_triangle(kind, vertex + i * 3, width, height);
+        random_triangle(kind, vertex + i * 3, s->width, s->height);
         for (int k = 0; k < 3; k++)
             vertex[i * 3 + k].value = (v4){(float)(i % 61 + 1), 0, 0, 0};
     }
-    int differences = differing_pixels(context, vertex, triangles, width, height, tile_size);
+    int differences = differing_pixels(s, vertex, triangles);
     free(vertex);
     return differences;
 }
@@ -156,14 +179,14 @@ static void random_triangles_cover_the_truth(void **state)
     (void)state;
     const int sizes[4][2] = {{64, 64}, {61, 67}, {64, 64}, {96, 33}};
     const int batch = 2500;
-    int64_t per_kind = long_form() ? 250000 : 40000, drawn = 0;
+    int64_t per_kind = long_form() ? 1000000 : 100000, drawn = 0;
     amb_context *context = NULL;
     assert_int_equal(amb_context_create(NULL, &context, NULL), AMB_OK);
     for (int kind = 0; kind < KINDS; kind++) {
         int64_t differences = 0;
         for (int64_t i = 0; i < per_kind; i += batch) {
             const int *size = sizes[i / batch % 4];
-            differences += random_batch(context, kind, batch, size[0], size[1], 64);
+            differences += random_batch(&(setting){context, size[0], size[1], 64, 0}, kind, batch);
             drawn += batch;
         }
         if (differences)
@@ -172,6 +195,32 @@ static void random_triangles_cover_the_truth(void **state)
     }
     print_message("%lld random triangles, 0 differing pixels\n", (long long)drawn);
     amb_context_close(&context);
+}
+
+/* The truth's two forms agree: row by row, and pixel by pixel. */
+static void the_truth_agrees_with_itself(void **state)
+{
+    (void)state;
+    enum { WIDTH = 40, HEIGHT = 36 };
+    for (int i = 0; i < 3000; i++) {
+        raster_test_vertex v[3];
+        float clip[3][4], count[WIDTH * HEIGHT] = {0}, sum[WIDTH * HEIGHT];
+        random_triangle(i % KINDS, v, WIDTH, HEIGHT);
+        for (int k = 0; k < 3; k++)
+            memcpy(clip[k], &v[k].clip, sizeof clip[k]);
+        truth_triangle piece[7];
+        int n = i / KINDS % 8, dx = positions[3][2 * n], dy = positions[3][2 * n + 1];
+        canvas c = {.width = WIDTH, .height = HEIGHT, .count = count, .sum = sum};
+        int pieces = truth_clip((const float(*)[4])clip, WIDTH, HEIGHT, 1, piece);
+        for (int p = 0; p < pieces; p++)
+            truth_fill_sample(&piece[p], WIDTH, HEIGHT, dx, dy, add_pixel, &c);
+        for (int p = 0; p < WIDTH * HEIGHT; p++) {
+            int owned = 0;
+            for (int k = 0; k < pieces; k++)
+                owned += truth_area(&piece[k]) != 0 && truth_covers_sample(&piece[k], p % WIDTH, p / WIDTH, dx, dy);
+            assert_true(count[p] == (float)owned);
+        }
+    }
 }
 
 static void every_variant_covers_the_truth(void **state)
@@ -187,7 +236,8 @@ static void every_variant_covers_the_truth(void **state)
             amb_context_options options = {isas[i], threads[k]};
             assert_int_equal(amb_context_create(&options, &context, NULL), AMB_OK);
             for (int kind = 0; kind < KINDS; kind++)
-                assert_int_equal(random_batch(context, kind, 1000, 150, 131, tiles[k]), 0);
+                for (int samples = 0; samples < 4; samples++)
+                    assert_int_equal(random_batch(&(setting){context, 150, 131, tiles[k], samples}, kind, 250), 0);
             amb_context_close(&context);
         }
     }
@@ -196,28 +246,14 @@ static void every_variant_covers_the_truth(void **state)
 /* ---- meshes -------------------------------------------------------------------------------------------------------
  */
 
+/* With a random number of samples a pixel. */
 static int pixels_not_covered_once(const amb_context *context, const raster_test_vertex *vertex, uint32_t vertices,
                                    const uint32_t *index, uint32_t count, int size)
 {
-    const raster_test_shaders *shaders = raster_test_shaders_of(amb_context_isa(context));
     raster_test_uniforms uniforms = {.vertex = vertex};
-    amb_image *image = NULL;
-    amb_pass *pass = NULL;
-    assert_int_equal(amb_image_create(size, size, 1, &image, NULL), AMB_OK);
-    amb_target target = {.color = {image}};
-    assert_int_equal(amb_pass_begin(context, &target, &pass, NULL), AMB_OK);
-    amb_draw draw = {.lanes = shaders->lanes,
-                     .vertex = shaders->vertex,
-                     .fragment = shaders->one,
-                     .uniforms = &uniforms,
-                     .uniforms_size = sizeof uniforms,
-                     .varying_floats = 4,
-                     .indices = index,
-                     .count = count,
-                     .vertex_count = vertices,
-                     .blend = {AMB_BLEND_ADD}};
-    assert_int_equal(amb_pass_draw(pass, &draw, NULL), AMB_OK);
-    assert_int_equal(amb_pass_finish(&pass, NULL, NULL), AMB_OK);
+    amb_image *image =
+        draw_added(&(setting){context, size, size, 64, pick(4)},
+                   (amb_draw){.uniforms = &uniforms, .indices = index, .count = count, .vertex_count = vertices});
     int wrong = 0;
     for (int y = 0; y < size; y++)
         for (int x = 0; x < size; x++)
@@ -320,6 +356,7 @@ static void meshes_cover_every_pixel_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_truth_agrees_with_itself),
         cmocka_unit_test(random_triangles_cover_the_truth),
         cmocka_unit_test(every_variant_covers_the_truth),
         cmocka_unit_test(meshes_cover_every_pixel_once),

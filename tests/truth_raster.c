@@ -1,15 +1,16 @@
-/* The fill rules, written as plainly as they can be: every pixel against every edge, in 64-bit integers. */
+/* The fill rules, written as plainly as they can be: every row or pixel against every edge, in 64-bit integers. */
 #include "tests/truth_raster.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Distances to near, far, left, right, bottom and top; the guard band is 2^k times the window, at most 2^18 pixels
- * from its centre. */
-static double plane_distance(int plane, const double c[4], int width, int height)
+/* The guard band is 2^k times the window, at most 2^18 pixels from its centre. */
+static double guard_band(int size) { return exp2(floor(log2(262144.0 / (size / 2.0)))); }
+
+/* Distances to near, far, left, right, bottom and top. guard: of the width and the height. */
+static double plane_distance(int plane, const double c[4], const double guards[2])
 {
-    double half = plane < 4 ? width / 2.0 : height / 2.0;
-    double guard = exp2(floor(log2(262144.0 / half)));
+    double guard = guards[plane >= 4];
     switch (plane) {
     case 0:
         return c[2];
@@ -26,12 +27,12 @@ static double plane_distance(int plane, const double c[4], int width, int height
     }
 }
 
-static int clip_polygon(double in[][4], int count, double out[][4], int plane, int width, int height)
+static int clip_polygon(double in[][4], int count, double out[][4], int plane, const double guard[2])
 {
     int made = 0;
     for (int i = 0; i < count; i++) {
         double *a = in[i], *b = in[(i + 1) % count];
-        double da = plane_distance(plane, a, width, height), db = plane_distance(plane, b, width, height);
+        double da = plane_distance(plane, a, guard), db = plane_distance(plane, b, guard);
         if (!(da < 0))
             memcpy(out[made++], a, sizeof(double[4]));
         if ((da < 0) != (db < 0)) {
@@ -58,6 +59,7 @@ static int64_t to_grid(float ndc, float scale, float offset)
 
 int truth_clip(const float clip[3][4], int width, int height, int clip_depth, truth_triangle out[7])
 {
+    const double guard[2] = {guard_band(width), guard_band(height)};
     double polygon[2][16][4];
     int count = 3;
     for (int i = 0; i < 3; i++)
@@ -67,7 +69,7 @@ int truth_clip(const float clip[3][4], int width, int height, int clip_depth, tr
             polygon[0][i][k] = (double)clip[i][k];
         }
     for (int plane = clip_depth ? 0 : 2; plane < 6; plane++)
-        count = clip_polygon(polygon[plane % 2], count, polygon[(plane + 1) % 2], plane, width, height);
+        count = clip_polygon(polygon[plane % 2], count, polygon[(plane + 1) % 2], plane, guard);
     int64_t x[16], y[16];
     for (int i = 0; i < count; i++) {
         float c[4];
@@ -95,6 +97,17 @@ int64_t truth_area(const truth_triangle *t)
     return (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
 }
 
+/* Do samples on edge i, from corner i + 1 to i + 2, belong to the triangle? When it lies to the right of the edge, or
+ * below it if the edge is level. */
+static int owns_edge(const truth_triangle *t, int i)
+{
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    if (t->y[j] == t->y[k])
+        return t->y[i] > t->y[j];
+    return ((t->x[i] - t->x[j]) * (t->y[k] - t->y[j]) > (t->x[k] - t->x[j]) * (t->y[i] - t->y[j])) ==
+           (t->y[k] > t->y[j]);
+}
+
 int truth_covers(const truth_triangle *t, int x, int y) { return truth_covers_sample(t, x, y, 0, 0); }
 
 int truth_covers_sample(const truth_triangle *t, int x, int y, int dx, int dy)
@@ -104,38 +117,56 @@ int truth_covers_sample(const truth_triangle *t, int x, int y, int dx, int dy)
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         int64_t cross = (t->x[k] - t->x[j]) * (py - t->y[j]) - (t->y[k] - t->y[j]) * (px - t->x[j]);
-        if (cross * turn < 0)
+        if (cross * turn < 0 || (cross == 0 && !owns_edge(t, i)))
             return 0;
-        if (cross == 0) {
-            /* On the edge: owned when the triangle lies to the right of it, or below it if it is level. */
-            int level = t->y[j] == t->y[k];
-            int right = (t->y[j] != t->y[k]) && ((t->x[i] - t->x[j]) * (t->y[k] - t->y[j]) >
-                                                 (t->x[k] - t->x[j]) * (t->y[i] - t->y[j])) == (t->y[k] > t->y[j]);
-            int below = level && t->y[i] > t->y[j];
-            if (!right && !below)
-                return 0;
-        }
     }
     return 1;
 }
 
 static int64_t clamp(int64_t a, int64_t lo, int64_t hi) { return a < lo ? lo : a > hi ? hi : a; }
 
-void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user)
+static int64_t floor_divide(int64_t a, int64_t b) /* b > 0 */ { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+/* Narrows first…last to the pixels of a row whose sample is inside edge i: slope · x + offset ≥ least, solved for x. */
+static void narrow_row(const truth_triangle *t, int i, int y, int dx, int dy, int64_t *first, int64_t *last)
+{
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    int64_t turn = truth_area(t) > 0 ? 1 : -1, py = 256 * (int64_t)y + 128 + 16 * dy;
+    int64_t slope = -turn * (t->y[k] - t->y[j]) * 256;
+    int64_t offset = turn * ((t->x[k] - t->x[j]) * (py - t->y[j]) - (t->y[k] - t->y[j]) * (128 + 16 * dx - t->x[j]));
+    int64_t least = owns_edge(t, i) ? 0 : 1;
+    if (slope > 0) {
+        int64_t x = -floor_divide(offset - least, slope);
+        *first = x > *first ? x : *first;
+    } else if (slope < 0) {
+        int64_t x = floor_divide(offset - least, -slope);
+        *last = x < *last ? x : *last;
+    } else if (offset < least) {
+        *last = *first - 1;
+    }
+}
+
+void truth_fill_sample(const truth_triangle *t, int width, int height, int dx, int dy,
+                       void (*pixel)(void *user, int x, int y), void *user)
 {
     if (truth_area(t) == 0)
         return;
-    int64_t x0 = t->x[0], x1 = x0, y0 = t->y[0], y1 = y0;
-    for (int k = 1; k < 3; k++) {
-        x0 = t->x[k] < x0 ? t->x[k] : x0, x1 = t->x[k] > x1 ? t->x[k] : x1;
+    int64_t y0 = t->y[0], y1 = y0;
+    for (int k = 1; k < 3; k++)
         y0 = t->y[k] < y0 ? t->y[k] : y0, y1 = t->y[k] > y1 ? t->y[k] : y1;
+    int top = (int)clamp(y0 / 256 - 2, 0, height), bottom = (int)clamp(y1 / 256 + 2, -1, height - 1);
+    for (int y = top; y <= bottom; y++) {
+        int64_t first = 0, last = width - 1;
+        for (int i = 0; i < 3; i++)
+            narrow_row(t, i, y, dx, dy, &first, &last);
+        for (int64_t x = first; x <= last; x++)
+            pixel(user, (int)x, y);
     }
-    int first_x = (int)clamp(x0 / 256 - 1, 0, width), last_x = (int)clamp(x1 / 256 + 1, -1, width - 1);
-    int first_y = (int)clamp(y0 / 256 - 1, 0, height), last_y = (int)clamp(y1 / 256 + 1, -1, height - 1);
-    for (int y = first_y; y <= last_y; y++)
-        for (int x = first_x; x <= last_x; x++)
-            if (truth_covers(t, x, y))
-                pixel(user, x, y);
+}
+
+void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user)
+{
+    truth_fill_sample(t, width, height, 0, 0, pixel, user);
 }
 
 void truth_draw(const float clip[3][4], int width, int height, void (*pixel)(void *user, int x, int y), void *user)
@@ -189,6 +220,7 @@ static int leaves_diamond(int64_t ax, int64_t ay, int64_t bx, int64_t by)
 void truth_draw_line(const float from[4], const float to[4], int width, int height, int clip_depth,
                      void (*pixel)(void *user, int x, int y), void *user)
 {
+    const double guard[2] = {guard_band(width), guard_band(height)};
     double end[2][4];
     for (int k = 0; k < 4; k++) {
         if (!isfinite(from[k]) || !isfinite(to[k]))
@@ -196,7 +228,7 @@ void truth_draw_line(const float from[4], const float to[4], int width, int heig
         end[0][k] = (double)from[k], end[1][k] = (double)to[k];
     }
     for (int plane = clip_depth ? 0 : 2; plane < 6; plane++) {
-        double d[2] = {plane_distance(plane, end[0], width, height), plane_distance(plane, end[1], width, height)};
+        double d[2] = {plane_distance(plane, end[0], guard), plane_distance(plane, end[1], guard)};
         if (d[0] < 0 && d[1] < 0)
             return;
         for (int i = 0; i < 2; i++)
@@ -227,6 +259,7 @@ void truth_draw_line(const float from[4], const float to[4], int width, int heig
 void truth_draw_point(const float clip[4], float size, int width, int height, int clip_depth,
                       void (*pixel)(void *user, int x, int y), void *user)
 {
+    const double guard[2] = {guard_band(width), guard_band(height)};
     double c[4];
     for (int k = 0; k < 4; k++) {
         if (!isfinite(clip[k]))
@@ -234,7 +267,7 @@ void truth_draw_point(const float clip[4], float size, int width, int height, in
         c[k] = (double)clip[k];
     }
     for (int plane = clip_depth ? 0 : 2; plane < 6; plane++)
-        if (plane_distance(plane, c, width, height) < 0)
+        if (plane_distance(plane, c, guard) < 0)
             return;
     if (!(clip[3] >= 0x1p-126f))
         return;

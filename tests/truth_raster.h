@@ -21,7 +21,10 @@ int truth_covers(const truth_triangle *t, int x, int y);
 int truth_covers_sample(const truth_triangle *t, int x, int y, int dx, int dy);
 /* Calls pixel() for every pixel of the window that a snapped triangle owns. */
 void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user);
-/* Both of them, whatever way the pieces face. */
+/* The same for samples dx, dy sixteenths of a pixel from the centres. */
+void truth_fill_sample(const truth_triangle *t, int width, int height, int dx, int dy,
+                       void (*pixel)(void *user, int x, int y), void *user);
+/* Clips and fills, whatever way the pieces face. */
 void truth_draw(const float clip[3][4], int width, int height, void (*pixel)(void *user, int x, int y), void *user);
 
 /* A line by the diamond-exit rule, after clipping; with clip_depth 0 without the near and far planes. */
