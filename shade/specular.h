@@ -26,25 +26,30 @@ AMB_INLINE f32x specular_blinn_phong(v3x n, v3x l, v3x v, float exponent)
 }
 
 /* Beckmann's distribution of microfacet slopes, per steradian: e^(-tan²θ/m²)/(π m² cos⁴θ), θ between normal and half
- * vector, m in (0, 1] the RMS slope. Its projection ∫ D·cosθ dω over the hemisphere is 1. */
-AMB_INLINE f32x specular_beckmann(f32x n_dot_h, float m)
+ * vector, m in (0, 1] the RMS slope, a value a lane. Its projection ∫ D·cosθ dω over the hemisphere is 1. */
+AMB_INLINE f32x specular_beckmann_m(f32x n_dot_h, f32x m)
 {
-    f32x c2 = f_max(n_dot_h * n_dot_h, f_set(1.0e-6f));
-    float m2 = m * m;
+    f32x c2 = f_max(n_dot_h * n_dot_h, f_set(1.0e-6f)), m2 = m * m;
     f32x d = f_exp((c2 - 1.0f) / (c2 * m2)) / (c2 * c2 * (AMB_PI * m2));
     return f_sel(n_dot_h > 0.0f, d, f_set(0.0f));
 }
+/* The same with one m for all lanes. */
+AMB_INLINE f32x specular_beckmann(f32x n_dot_h, float m) { return specular_beckmann_m(n_dot_h, f_set(m)); }
 
 /* BRDF D·G/(4 n·l n·v) without its Fresnel factor, per steradian: multiply by F (fresnel_schlick of v·h), by n·l and by
- * the light. 0 where light or eye is below the surface. R. L. Cook and K. E. Torrance, TOG 1(1), 1982, with the 4 of
- * later derivations (the paper has π). */
-AMB_INLINE f32x specular_cook_torrance(v3x n, v3x l, v3x v, float m)
+ * the light. 0 where light or eye is below the surface. m as above. R. L. Cook and K. E. Torrance, TOG 1(1), 1982, with
+ * the 4 of later derivations (the paper has π). */
+AMB_INLINE f32x specular_cook_torrance_m(v3x n, v3x l, v3x v, f32x m)
 {
     v3x h = v3x_normalize(v3x_add(l, v));
     f32x nl = v3x_dot(n, l), nv = v3x_dot(n, v), nh = v3x_dot(n, h), vh = f_max(v3x_dot(v, h), f_set(1.0e-6f));
     f32x shadowing = f_min(f_min(2.0f * nh * nv / vh, 2.0f * nh * nl / vh), f_set(1.0f));
-    f32x brdf = specular_beckmann(nh, m) * shadowing / (4.0f * nl * nv);
+    f32x brdf = specular_beckmann_m(nh, m) * shadowing / (4.0f * nl * nv);
     return f_sel((nl > 0.0f) & (nv > 0.0f), brdf, f_set(0.0f));
+}
+AMB_INLINE f32x specular_cook_torrance(v3x n, v3x l, v3x v, float m)
+{
+    return specular_cook_torrance_m(n, l, v, f_set(m));
 }
 
 #endif

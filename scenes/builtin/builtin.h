@@ -66,6 +66,21 @@ amb_status amb_builtin_saturn_ring_scatter(const amb_context *context, amb_textu
 /* Uranus's nine narrow rings on the same scale: tint and opacity. */
 amb_status amb_builtin_uranus_rings(const amb_context *context, amb_texture **out, amb_error *error);
 
+/* The landscape: heights 0…1 of an island, 2048² R32F, the sea at 0.25; and 1024² tiles of ground, linear albedo. With
+ * mips. */
+amb_status amb_builtin_hills(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_ground_grass(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_ground_rock(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_ground_sand(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_ground_snow(const amb_context *context, amb_texture **out, amb_error *error);
+
+/* Four independent noises, 512², RGBA8, tile; 0…1 about ½. */
+amb_status amb_builtin_hills_noise(const amb_context *context, amb_texture **out, amb_error *error);
+/* Atlases of plants, see plants.c: trees 1024×512, sRGB8_A8, their normals RGBA8; grass 1024×256, sRGB8_A8. */
+amb_status amb_builtin_trees(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_tree_normals(const amb_context *context, amb_texture **out, amb_error *error);
+amb_status amb_builtin_grass_tufts(const amb_context *context, amb_texture **out, amb_error *error);
+
 /* A latitude-longitude panorama (its centre looks along -z, +x to the right) as an RGBA16F cube map of size² faces. */
 amb_status amb_panorama_to_cube(const amb_context *context, const amb_texture *panorama, int size, amb_texture **out,
                                 amb_error *error);
