@@ -60,11 +60,13 @@ typedef struct amb_response {
     f32x diffuse, specular;
 } amb_response;
 
-/* The coursework's: Lambert, and specular_blinn_phong with its highlight as bright as `strength` wants. */
-AMB_INLINE amb_response light_blinn_phong(v3x n, v3x to_light, v3x to_eye, float exponent, f32x strength)
+/* The coursework's: Lambert, and Blinn's highlight of an exponent a lane, as bright as `strength` wants. */
+AMB_INLINE amb_response light_blinn_phong(v3x n, v3x to_light, v3x to_eye, f32x exponent, f32x strength)
 {
-    return (amb_response){diffuse_lambert(v3x_dot(n, to_light)),
-                          strength * specular_blinn_phong(n, to_light, to_eye, exponent)};
+    f32x facing = v3x_dot(n, to_light);
+    f32x cosine = f_max(v3x_dot(n, v3x_normalize(v3x_add(to_light, to_eye))), f_set(0.0f));
+    f32x highlight = f_sel(facing > 0.0f, f_pow(cosine, exponent), f_set(0.0f));
+    return (amb_response){diffuse_lambert(facing), strength * highlight};
 }
 
 /* Lambert under a Cook-Torrance layer of roughness m (the RMS slope, in (0, 1], a value a lane) and Schlick's Fresnel
