@@ -70,14 +70,15 @@ AMB_INLINE amb_response light_blinn_phong(v3x n, v3x to_light, v3x to_eye, f32x 
 }
 
 /* Lambert under a Cook-Torrance layer of roughness m (the RMS slope, in (0, 1], a value a lane) and Schlick's Fresnel
- * term; what the layer reflects does not reach the diffuse base. times π, as the light's unit has 1/π in it. */
+ * term; what it reflects of the light as it comes in does not reach the base. Times π, as the light's unit has 1/π in
+ * it. */
 AMB_INLINE amb_response light_cook_torrance(v3x n, v3x to_light, v3x to_eye, f32x m, f32x f0)
 {
     v3x h = v3x_normalize(v3x_add(to_light, to_eye));
     f32x lambert = diffuse_lambert(v3x_dot(n, to_light));
     f32x fresnel = fresnel_schlick(v3x_dot(to_eye, h), f0);
     f32x layer = specular_cook_torrance_m(n, to_light, to_eye, m);
-    return (amb_response){lambert * (1.0f - fresnel), AMB_PI * fresnel * layer * lambert};
+    return (amb_response){lambert * (1.0f - fresnel_schlick(lambert, f0)), AMB_PI * fresnel * layer * lambert};
 }
 
 #endif

@@ -4,10 +4,12 @@
 #include <shade/diffuse.h>
 #include <shade/fog.h>
 #include <shade/fresnel.h>
+#include <shade/light.h>
 #include <shade/normal_map.h>
 #include <shade/phase.h>
 #include <shade/ring.h>
 #include <shade/specular.h>
+#include <shade/waves.h>
 
 #define V3(i) ((v3x){in[i], in[(i) + 1], in[(i) + 2]})
 AMB_INLINE void write(v3x v, f32x *out) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
@@ -46,6 +48,33 @@ LANES_CASE(ring_light, 4, 2, {
     out[0] = ring_scatter(in[0], in[1], in[2]);
     out[1] = ring_planet_shadow(V3(0), (v3x){f_set(0.6f), f_set(0.0f), f_set(0.8f)}, 1.5f, 4.0f);
 })
+LANES_CASE(spot, 3, 4, {
+    static const amb_light light = {.kind = AMB_LIGHT_SPOT,
+                                    .position = {0.2f, 0.1f, -0.3f},
+                                    .reach = 3.0f,
+                                    .axis = {0.6f, 0.0f, 0.8f},
+                                    .cos_inner = 0.9f,
+                                    .cos_outer = 0.2f};
+    amb_arriving a = light_at(&light, V3(0));
+    write(a.to_light, out), out[3] = a.strength;
+})
+LANES_CASE(layered, 11, 2, {
+    amb_response r = light_cook_torrance(V3(0), V3(3), V3(6), in[9], in[10]);
+    out[0] = r.diffuse, out[1] = r.specular;
+})
+LANES_CASE(coursework, 11, 2, {
+    amb_response r = light_blinn_phong(V3(0), V3(3), V3(6), in[9], in[10]);
+    out[0] = r.diffuse, out[1] = r.specular;
+})
+LANES_CASE(waves, 3, 8, {
+    for (int noise = 0; noise < 2; noise++) {
+        amb_waves w = {.height = 0.6f, .frequency = 0.9f, .speed = 1.7f, .noise = noise != 0, .count = 4};
+        waves_at_time(&w, 3.5);
+        amb_wave wave = waves_at(&w, (v2x){in[0], in[1]}, in[2]);
+        out[4 * noise] = wave.height, out[4 * noise + 1] = wave.slope.x;
+        out[4 * noise + 2] = wave.slope.y, out[4 * noise + 3] = wave.roughness;
+    }
+})
 
 const lanes_case WIDE(lanes_shade)[] = {LANES_ENTRY(lambert, 1, 1),
                                         LANES_ENTRY(wrapped, 1, 1),
@@ -73,4 +102,8 @@ const lanes_case WIDE(lanes_shade)[] = {LANES_ENTRY(lambert, 1, 1),
                                         LANES_ENTRY(phase, 1, 3),
                                         LANES_ENTRY(fog, 3, 1),
                                         LANES_ENTRY(ring_light, 4, 2),
+                                        LANES_ENTRY(spot, 3, 4),
+                                        LANES_ENTRY(layered, 11, 2),
+                                        LANES_ENTRY(coursework, 11, 2),
+                                        LANES_ENTRY(waves, 3, 8),
                                         {0}};
