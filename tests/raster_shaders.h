@@ -16,6 +16,9 @@ typedef struct raster_test_uniforms {
     float depth;        /* written by the depth-writing shader: depth · this */
     const float *table; /* of the table shader: four floats a pixel */
     int table_width;
+    const amb_texture *texture; /* of the textured shaders, and of fetch */
+    amb_sampler sampler;
+    v2 ddx, ddy; /* gradients that the shader gives */
     int targets; /* that the coded shaders write, at least two */
     int hostile; /* 0…8: how many of 8 of their values are of RASTER_TEST_HOSTILE instead */
     int holes;   /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
@@ -24,13 +27,16 @@ typedef struct raster_test_uniforms {
 typedef struct raster_test_shaders {
     int lanes;
     amb_vertex_shader vertex;
-    amb_fragment_shader value;       /* target 0: value; target 1: d value.x/dx, d/dy, x, y; target 2: ids, depth */
-    amb_fragment_shader one;         /* target 0: 1, value.x */
-    amb_fragment_shader write_depth; /* target 0: value; depth · uniforms.depth */
-    amb_fragment_shader coded;       /* targets: RASTER_TEST_CODE of primitive and channel */
-    amb_fragment_shader coded_depth; /* and depth: RASTER_TEST_CODE of the primitive and 9 */
-    amb_fragment_shader screen;      /* target 0: x, y, depth, 1 */
-    amb_fragment_shader table;       /* every target: the table's value of the pixel */
+    amb_fragment_shader value;         /* target 0: value; target 1: d value.x/dx, d/dy, x, y; target 2: ids, depth */
+    amb_fragment_shader one;           /* target 0: 1, value.x */
+    amb_fragment_shader write_depth;   /* target 0: value; depth · uniforms.depth */
+    amb_fragment_shader coded;         /* targets: RASTER_TEST_CODE of primitive and channel */
+    amb_fragment_shader coded_depth;   /* and depth: RASTER_TEST_CODE of the primitive and 9 */
+    amb_fragment_shader screen;        /* target 0: x, y, depth, 1 */
+    amb_vertex_shader fetch;           /* value: the texture at value.x, value.y, level value.z */
+    amb_fragment_shader textured;      /* target 0: the texture at value.x, value.y; target 1: with ddx, ddy */
+    amb_fragment_shader textured_cube; /* target 0: the texture in direction value.x, y, z */
+    amb_fragment_shader table;         /* every target: the table's value of the pixel */
 } raster_test_shaders;
 
 /* A small exact number of a primitive and a channel: -¼…1, without rounding. */

@@ -73,6 +73,36 @@ static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
     out->depth = code(in->primitive, 9, u->hostile);
 }
 
+static void fetch(const amb_vs_in *in, amb_vs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    v4x *value = out->varyings;
+    vertex(in, out);
+    *value = amb_sample_2d_lod(u->texture, &u->sampler, v2x_of(value->x, value->y), value->z);
+}
+
+static void textured(const amb_fs_in *in, amb_fs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    const v4x *v = in->varyings;
+    v2x uv = v2x_of(v->x, v->y);
+#if AMB_LANES > 1
+    out->color[0] = amb_sample_2d(u->texture, &u->sampler, uv);
+#endif
+    out->color[1] = amb_sample_2d_grad(u->texture, &u->sampler, uv, v2x_splat(u->ddx), v2x_splat(u->ddy));
+}
+
+static void textured_cube(const amb_fs_in *in, amb_fs_out *out)
+{
+#if AMB_LANES > 1
+    const raster_test_uniforms *u = in->uniforms;
+    const v4x *v = in->varyings;
+    out->color[0] = amb_sample_cube(u->texture, &u->sampler, v3x_of(v->x, v->y, v->z));
+#else
+    (void)in, (void)out;
+#endif
+}
+
 static void table(const amb_fs_in *in, amb_fs_out *out)
 {
     const raster_test_uniforms *u = in->uniforms;
@@ -85,7 +115,7 @@ static void table(const amb_fs_in *in, amb_fs_out *out)
 
 const raster_test_shaders *raster_test_shaders_get(void)
 {
-    static const raster_test_shaders shaders = {AMB_LANES, vertex,      value,  one,  write_depth,
-                                                coded,     coded_depth, screen, table};
+    static const raster_test_shaders shaders = {AMB_LANES,   vertex, value, one,      write_depth,   coded,
+                                                coded_depth, screen, fetch, textured, textured_cube, table};
     return &shaders;
 }

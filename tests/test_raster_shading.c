@@ -21,11 +21,14 @@ static double uniform(double lo, double hi)
     return lo + (hi - lo) * (double)(random_state >> 40) / 16777216.0;
 }
 
+static int next_pick(int count) { return (int)(uniform(0, 1) * count); }
+
 typedef struct fixture {
     amb_context *context;
     amb_image *color[3], *depth;
     raster_test_vertex vertex[3];
-    truth_triangle pieces[7]; /* of the triangle; only the first is used: nothing here is clipped */
+    int samples;
+    truth_triangle pieces[7]; /* of the triangle, clipped */
 } fixture;
 
 static void open_fixture(fixture *f, amb_isa isa)
@@ -65,7 +68,10 @@ static void draw(fixture *f)
 {
     const raster_test_shaders *shaders = raster_test_shaders_of(amb_context_isa(f->context));
     raster_test_uniforms uniforms = {.vertex = f->vertex};
-    amb_target target = {.color = {f->color[0], f->color[1], f->color[2]}, .depth = f->depth, .clear_depth = 1.0f};
+    amb_target target = {.color = {f->color[0], f->color[1], f->color[2]},
+                         .depth = f->depth,
+                         .clear_depth = 1.0f,
+                         .samples = f->samples};
     amb_pass *pass = NULL;
     amb_draw d = {.lanes = shaders->lanes,
                   .vertex = shaders->vertex,
@@ -79,38 +85,28 @@ static void draw(fixture *f)
     assert_int_equal(amb_pass_finish(&pass, NULL, NULL), AMB_OK);
 }
 
-/* The exact weights of the corners at a pixel centre, from the snapped window triangle. */
-static void screen_weights(const truth_triangle *t, int x, int y, double weight[3])
+/* Component c of the value at the corners of a piece of the triangle. */
+static void corner_values(const fixture *f, const truth_triangle *piece, int c, double corner[3])
 {
-    int64_t px = 256 * (int64_t)x + 128, py = 256 * (int64_t)y + 128;
     for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        int64_t cross = (t->x[k] - t->x[j]) * (py - t->y[j]) - (t->y[k] - t->y[j]) * (px - t->x[j]);
-        weight[i] = (double)cross / (double)truth_area(t);
+        corner[i] = 0;
+        for (int k = 0; k < 3; k++)
+            corner[i] += piece->weight[i][k] * (double)(&f->vertex[k].value.x)[c];
     }
 }
 
-static double value_of(const v4 *v, int component) { return (double)(&v->x)[component]; }
-
-/* The perspective-correct value, and the condition: how much larger the terms are than their sum. */
-static double true_value(const fixture *f, int x, int y, int component, double *condition)
+static double true_value(const fixture *f, const truth_triangle *piece, int x, int y, int c, double *condition)
 {
-    double weight[3], sum = 0, size = 0, top = 0;
-    screen_weights(f->pieces, x, y, weight);
-    for (int i = 0; i < 3; i++) {
-        double p = weight[i] / (double)f->vertex[i].clip.w;
-        sum += p, size += fabs(p);
-        top += p * value_of(&f->vertex[i].value, component);
-    }
-    *condition = size / fabs(sum);
-    return top / sum;
+    double corner[3];
+    corner_values(f, piece, c, corner);
+    return truth_value(piece, corner, x, y, 0, 0, condition);
 }
 
 static double largest(const fixture *f, int component)
 {
     double m = 0;
     for (int i = 0; i < 3; i++)
-        m = fmax(m, fabs(value_of(&f->vertex[i].value, component)));
+        m = fmax(m, fabs((double)(&f->vertex[i].value.x)[component]));
     return m;
 }
 
@@ -119,17 +115,14 @@ typedef struct errors {
     int64_t pixels;
 } errors;
 
-static void check_pixel(const fixture *f, int x, int y, errors *worst)
+static void check_pixel(const fixture *f, const truth_triangle *piece, int x, int y, errors *worst)
 {
-    const double unit = 0x1p-24;
-    double weight[3], depth = 0, condition;
-    screen_weights(f->pieces, x, y, weight);
-    for (int i = 0; i < 3; i++)
-        depth += weight[i] * (double)f->vertex[i].clip.z / (double)f->vertex[i].clip.w;
+    const double unit = 0x1p-24, depth = fmin(fmax(truth_depth(piece, x, y, 0, 0), 0), 1);
+    double condition;
     worst->depth = fmax(worst->depth, fabs((double)amb_image_row(f->depth, 0, y)[x] - depth) / unit);
     assert_true(amb_image_row(f->depth, 0, y)[x] == amb_image_row(f->color[2], 2, y)[x]);
     for (int c = 0; c < 4; c++) {
-        double truth = true_value(f, x, y, c, &condition);
+        double truth = true_value(f, piece, x, y, c, &condition);
         double error = fabs((double)amb_image_row(f->color[0], c, y)[x] - truth) / (unit * largest(f, c));
         worst->value = fmax(worst->value, error);
     }
@@ -138,7 +131,7 @@ static void check_pixel(const fixture *f, int x, int y, errors *worst)
     for (int axis = 0; axis < 2; axis++) { /* x, then y */
         double c0, c1;
         int x0 = axis ? x : x & ~1, y0 = axis ? y & ~1 : y;
-        along[axis] = true_value(f, x0 + !axis, y0 + axis, 0, &c1) - true_value(f, x0, y0, 0, &c0);
+        along[axis] = true_value(f, piece, x0 + !axis, y0 + axis, 0, &c1) - true_value(f, piece, x0, y0, 0, &c0);
         conditions[axis] = fmax(c0, c1) * fmax(c0, c1);
         double got = (double)amb_image_row(f->color[1], axis, y)[x];
         worst->derivative =
@@ -169,7 +162,7 @@ static void shading_inputs_match_double_precision(void **state)
                     bool covered = truth_covers(f.pieces, x, y) != 0;
                     assert_int_equal(covered, amb_image_row(f.color[2], 3, y)[x] == 1.0f);
                     if (covered)
-                        check_pixel(&f, x, y, &worst);
+                        check_pixel(&f, f.pieces, x, y, &worst);
                 }
         }
         print_message("%s: %lld pixels; worst errors in 2^-24: depth %.2f, varyings %.2f, derivatives %.2f\n",
@@ -182,9 +175,87 @@ static void shading_inputs_match_double_precision(void **state)
     }
 }
 
+/* A triangle that the near plane, the far plane or the guard band cuts; how many pieces are left. */
+static int random_clipped_triangle(fixture *f)
+{
+    float clip[3][4];
+    for (int i = 0; i < 3; i++) {
+        double far_out = next_pick(4) == 0 ? 1e6 : 3, w = uniform(-1, 3);
+        f->vertex[i].clip =
+            (v4){(float)uniform(-far_out, far_out), (float)uniform(-3, 3), (float)(uniform(-1, 1.5) * w), (float)w};
+        f->vertex[i].value = (v4){(float)uniform(-8, 8), (float)uniform(0, 1), (float)uniform(-1e4, 1e4), 3.25f};
+        memcpy(clip[i], &f->vertex[i].clip, sizeof clip[i]);
+    }
+    return truth_clip((const float(*)[4])clip, SIZE, SIZE, 1, f->pieces);
+}
+
+/* Clipping makes new corners; values on the pieces are still the triangle's. */
+static void clipped_triangles_keep_their_values(void **state)
+{
+    (void)state;
+    fixture f = {0};
+    errors worst = {0};
+    int clipped = 0;
+    open_fixture(&f, AMB_ISA_AUTO);
+    for (int n = 0; n < 3000; n++) {
+        int pieces = random_clipped_triangle(&f);
+        clipped += pieces > 1;
+        if (pieces == 0)
+            continue;
+        draw(&f);
+        for (int i = 0; i < pieces; i++)
+            for (int y = 0; y < SIZE && truth_area(&f.pieces[i]) != 0; y++)
+                for (int x = 0; x < SIZE; x++)
+                    if (truth_covers(&f.pieces[i], x, y))
+                        check_pixel(&f, &f.pieces[i], x, y, &worst);
+    }
+    print_message("%d clipped, %lld pixels; worst errors in 2^-24: depth %.2f, varyings %.2f, derivatives %.2f\n",
+                  clipped, (long long)worst.pixels, worst.depth, worst.value, worst.derivative);
+    assert_true(clipped > 500 && worst.pixels > 100000);
+    assert_true(worst.depth <= 4.0);
+    assert_true(worst.value <= 8.0);
+    assert_true(worst.derivative <= 12.0);
+    close_fixture(&f);
+}
+
+/* With samples the shader runs at the pixel's centre, covered or not, and each sample has the depth of its own place.
+ */
+static void samples_have_their_own_depth(void **state)
+{
+    (void)state;
+    static const int first[4][2] = {{0, 0}, {4, 4}, {-2, -6}, {1, -3}}; /* sample 0: what a resolved depth is */
+    fixture f = {0};
+    double worst = 0;
+    long pixels = 0;
+    open_fixture(&f, AMB_ISA_AUTO);
+    for (int n = 0; n < 1200; n++) {
+        int log_samples = n % 4;
+        if (!random_triangle(&f, n % 3 ? 40 : 3000, 1))
+            continue;
+        f.samples = 1 << log_samples;
+        draw(&f);
+        for (int y = 0; y < SIZE; y++)
+            for (int x = 0; x < SIZE; x++) {
+                int dx = first[log_samples][0], dy = first[log_samples][1];
+                float depth = amb_image_row(f.depth, 0, y)[x];
+                if (!truth_covers_sample(f.pieces, x, y, dx, dy)) {
+                    assert_true(depth == 1.0f);
+                    continue;
+                }
+                worst = fmax(worst, fabs((double)depth - truth_depth(f.pieces, x, y, dx, dy)) * 0x1p24);
+                pixels++;
+            }
+    }
+    print_message("%ld samples; worst depth error %.2f of 2^-24\n", pixels, worst);
+    assert_true(pixels > 100000 && worst <= 4.0);
+    close_fixture(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clipped_triangles_keep_their_values),
+        cmocka_unit_test(samples_have_their_own_depth),
         cmocka_unit_test(shading_inputs_match_double_precision),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

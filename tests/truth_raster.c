@@ -27,18 +27,21 @@ static double plane_distance(int plane, const double c[4], const double guards[2
     }
 }
 
-static int clip_polygon(double in[][4], int count, double out[][4], int plane, const double guard[2])
+/* A vertex: clip x, y, z, w and the weights of the triangle's corners. */
+#define PARTS 7
+
+static int clip_polygon(double in[][PARTS], int count, double out[][PARTS], int plane, const double guard[2])
 {
     int made = 0;
     for (int i = 0; i < count; i++) {
         double *a = in[i], *b = in[(i + 1) % count];
         double da = plane_distance(plane, a, guard), db = plane_distance(plane, b, guard);
         if (!(da < 0))
-            memcpy(out[made++], a, sizeof(double[4]));
+            memcpy(out[made++], a, sizeof out[0]);
         if ((da < 0) != (db < 0)) {
             double *p = da < 0 ? b : a, *q = da < 0 ? a : b; /* from the inner end */
             double dp = da < 0 ? db : da, dq = da < 0 ? da : db;
-            for (int k = 0; k < 4; k++)
+            for (int k = 0; k < PARTS; k++)
                 out[made][k] = p[k] + (q[k] - p[k]) * (dp / (dp - dq));
             made++;
         }
@@ -60,13 +63,13 @@ static int64_t to_grid(float ndc, float scale, float offset)
 int truth_clip(const float clip[3][4], int width, int height, int clip_depth, truth_triangle out[7])
 {
     const double guard[2] = {guard_band(width), guard_band(height)};
-    double polygon[2][16][4];
+    double polygon[2][16][PARTS];
     int count = 3;
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 4; k++) {
-            if (!isfinite(clip[i][k]))
+        for (int k = 0; k < PARTS; k++) {
+            if (k < 4 && !isfinite(clip[i][k]))
                 return 0;
-            polygon[0][i][k] = (double)clip[i][k];
+            polygon[0][i][k] = k < 4 ? (double)clip[i][k] : k == 4 + i;
         }
     for (int plane = clip_depth ? 0 : 2; plane < 6; plane++)
         count = clip_polygon(polygon[plane % 2], count, polygon[(plane + 1) % 2], plane, guard);
@@ -86,7 +89,8 @@ int truth_clip(const float clip[3][4], int width, int height, int clip_depth, tr
         int corner[3] = {0, i + 1, i + 2};
         for (int k = 0; k < 3; k++) {
             out[i].x[k] = x[corner[k]], out[i].y[k] = y[corner[k]];
-            memcpy(out[i].clip[k], polygon[0][corner[k]], sizeof(double[4]));
+            memcpy(out[i].clip[k], polygon[0][corner[k]], sizeof out[i].clip[k]);
+            memcpy(out[i].weight[k], polygon[0][corner[k]] + 4, sizeof out[i].weight[k]);
         }
     }
     return count > 2 ? count - 2 : 0;
@@ -95,6 +99,40 @@ int truth_clip(const float clip[3][4], int width, int height, int clip_depth, tr
 int64_t truth_area(const truth_triangle *t)
 {
     return (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
+}
+
+/* The weights of the corners at a sample, linear in the window. */
+static void window_weights(const truth_triangle *t, int x, int y, int dx, int dy, double weight[3])
+{
+    int64_t px = 256 * (int64_t)x + 128 + 16 * dx, py = 256 * (int64_t)y + 128 + 16 * dy;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        int64_t cross = (t->x[k] - t->x[j]) * (py - t->y[j]) - (t->y[k] - t->y[j]) * (px - t->x[j]);
+        weight[i] = (double)cross / (double)truth_area(t);
+    }
+}
+
+double truth_value(const truth_triangle *t, const double corner[3], int x, int y, int dx, int dy, double *condition)
+{
+    double weight[3], sum = 0, size = 0, top = 0;
+    window_weights(t, x, y, dx, dy, weight);
+    for (int i = 0; i < 3; i++) {
+        double p = weight[i] / t->clip[i][3];
+        sum += p, size += fabs(p);
+        top += p * corner[i];
+    }
+    if (condition)
+        *condition = size / fabs(sum);
+    return top / sum;
+}
+
+double truth_depth(const truth_triangle *t, int x, int y, int dx, int dy)
+{
+    double weight[3], depth = 0;
+    window_weights(t, x, y, dx, dy, weight);
+    for (int i = 0; i < 3; i++)
+        depth += weight[i] * t->clip[i][2] / t->clip[i][3];
+    return depth;
 }
 
 /* Do samples on edge i, from corner i + 1 to i + 2, belong to the triangle? When it lies to the right of the edge, or

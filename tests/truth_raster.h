@@ -8,6 +8,7 @@
 typedef struct truth_triangle {
     int64_t x[3], y[3]; /* 1/256 pixel */
     double clip[3][4];
+    double weight[3][3]; /* of the unclipped triangle's corners, at each of these */
 } truth_triangle;
 
 /* Clips, projects and snaps; returns how many triangles came of it (at most 7; degenerate ones are among them). With
@@ -19,6 +20,11 @@ int64_t truth_area(const truth_triangle *t);
 int truth_covers(const truth_triangle *t, int x, int y);
 /* The same for a sample dx, dy sixteenths of a pixel from the centre. */
 int truth_covers_sample(const truth_triangle *t, int x, int y, int dx, int dy);
+/* The perspective-correct value, from those at the corners, at a sample dx, dy sixteenths of a pixel from the centre of
+ * a pixel. condition, if given: how much larger the terms are than their sum; 1 inside. */
+double truth_value(const truth_triangle *t, const double corner[3], int x, int y, int dx, int dy, double *condition);
+/* Depth there: linear in the window. */
+double truth_depth(const truth_triangle *t, int x, int y, int dx, int dy);
 /* Calls pixel() for every pixel of the window that a snapped triangle owns. */
 void truth_fill(const truth_triangle *t, int width, int height, void (*pixel)(void *user, int x, int y), void *user);
 /* The same for samples dx, dy sixteenths of a pixel from the centres. */
