@@ -12,7 +12,7 @@ typedef struct jupiter_params {
 } jupiter_params;
 
 static const amb_param jupiter_table[] = {
-    PLANET_PARAM_ROWS(jupiter_params, -82, 8, 195, 120, 3),
+    PLANET_PARAM_ROWS(jupiter_params, -82, 8, 195, 120, 3, 1.05f),
     PLANET_SURFACE_ROWS(jupiter_params, 0.16f, 0.80f, 0.62f, 0.80f, 0.58f, 0.55f, 2.6f, 0, 0, 0),
     {"oblateness",
      AMB_PARAM_FLOAT,
@@ -73,7 +73,7 @@ const planet_body WIDE(planet_jupiter) = {
             {"jupiter/color4", offsetof(jupiter_state, key[4])},
             {"jupiter/velocity", offsetof(jupiter_state, velocity)}},
     .draw = jupiter_draw,
-    .background = &planet_background_draw,
+    .sky = &planet_sky_of_stars,
     .aovs = jupiter_aovs,
     .aov_count = PLANET_AOVS,
     .flight = &planet_flight_ball,
@@ -91,7 +91,7 @@ const amb_scene WIDE(amb_scene_jupiter) = {
     .params = {jupiter_table, sizeof jupiter_table / sizeof *jupiter_table, sizeof(jupiter_params)},
     .aovs = jupiter_aovs,
     .aov_count = PLANET_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=aces",
     .load = jupiter_load,
     .frame = planet_frame,
     .unload = planet_unload,

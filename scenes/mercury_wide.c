@@ -18,7 +18,7 @@ typedef struct mercury_params {
 
 #define FIELD(name) offsetof(mercury_params, name)
 static const amb_param mercury_table[] = {
-    PLANET_PARAM_ROWS(mercury_params, -52.4f, 9.2f, 122, 420, 0.03f),
+    PLANET_PARAM_ROWS(mercury_params, -52.4f, 9.2f, 122, 420, 0.03f, 1.2f),
     {"wrap", AMB_PARAM_FLOAT, "", 0, 1, {0.22f}, NULL, FIELD(wrap), "w of the wrapped diffuse light"},
     {"contrast",
      AMB_PARAM_FLOAT,
@@ -193,11 +193,8 @@ static amb_status mercury_frame(const void *opaque, const amb_scene_job *job, am
     view.sun_size = 1.0f - 2.0f * half_sine * half_sine; /* a cosine that keeps its digits */
     view.sun_glow = p->sun_glow;
 
-    amb_draw background = planet_background_draw;
-    background.uniforms = &view;
-    background.uniforms_size = sizeof view;
     if (p->show == SHOW_BEAUTY)
-        status = amb_pass_draw(canvas.pass, &background, error);
+        status = planet_sky_draw(canvas.pass, &planet_sky_of_stars, &view, error);
     if (status == AMB_OK)
         status = mercury_draw(state, p, &view, job->time, canvas.pass, error);
     return canvas_finish(job, mercury_aovs, &canvas, status, error);
@@ -210,7 +207,7 @@ const amb_scene WIDE(amb_scene_mercury) = {
     .params = {mercury_table, sizeof mercury_table / sizeof *mercury_table, sizeof(mercury_params)},
     .aovs = mercury_aovs,
     .aov_count = MERCURY_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=aces",
     .load = mercury_load,
     .frame = mercury_frame,
     .unload = planet_unload,

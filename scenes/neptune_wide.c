@@ -9,7 +9,7 @@ typedef struct neptune_params {
 } neptune_params;
 
 static const amb_param neptune_table[] = {
-    PLANET_PARAM_ROWS(neptune_params, -84, 10, 90, 160, 28),
+    PLANET_PARAM_ROWS(neptune_params, -84, 10, 90, 160, 28, 1.5f),
     PLANET_SURFACE_ROWS(neptune_params, 0.18f, 0.85f, 0.60f, 0.80f, 1.0f, 0.6f, 2.4f, 0, 0, 0),
     PLANET_SHOW_ROW(neptune_params),
 };
@@ -36,7 +36,7 @@ const planet_body WIDE(planet_neptune) = {
     .state_bytes = sizeof(neptune_state),
     .map = {{"neptune/color", offsetof(neptune_state, colour)}},
     .draw = neptune_draw,
-    .background = &planet_background_draw,
+    .sky = &planet_sky_of_stars,
     .aovs = neptune_aovs,
     .aov_count = PLANET_AOVS,
     .flight = &planet_flight_ball,
@@ -54,7 +54,7 @@ const amb_scene WIDE(amb_scene_neptune) = {
     .params = {neptune_table, sizeof neptune_table / sizeof *neptune_table, sizeof(neptune_params)},
     .aovs = neptune_aovs,
     .aov_count = PLANET_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=aces",
     .load = neptune_load,
     .frame = planet_frame,
     .unload = planet_unload,

@@ -141,6 +141,20 @@ static amb_status make_map(const amb_context *context, void *state, const planet
     return planet_normal_texture(context, from, &relief, made_at(state, row->offset), error);
 }
 
+/* A sky that is not ours has its own stars. */
+static amb_status load_stars(amb_assets *assets, planet_state *state, amb_error *error)
+{
+    amb_asset_info info;
+    int i = 0;
+    do
+        amb_assets_describe(assets, i++, &info);
+    while (strcmp(info.name, "stars") != 0);
+    amb_status status = amb_assets_texture(assets, "stars", &state->stars, error);
+    if (status == AMB_OK && info.source == AMB_ASSET_BUILTIN)
+        status = amb_assets_mesh(assets, "stars/points", &state->points, error);
+    return status;
+}
+
 amb_status planet_load(const planet_body *body, const amb_context *context, amb_assets *assets, void **state,
                        amb_error *error)
 {
@@ -151,7 +165,7 @@ amb_status planet_load(const planet_body *body, const amb_context *context, amb_
     s->body = body;
     amb_status status = amb_mesh_sphere(SPHERE_RINGS, SPHERE_SEGMENTS, &s->sphere, error);
     if (status == AMB_OK)
-        status = amb_assets_texture(assets, "stars", &s->stars, error);
+        status = load_stars(assets, s, error);
     for (int i = 0; i < PLANET_MAX_MAPS && body->map[i].asset && status == AMB_OK; i++)
         status = amb_assets_texture(assets, body->map[i].asset, map_at(s, body->map[i].offset), error);
     for (int i = 0; i < PLANET_MAX_MADE && body->made[i].offset && status == AMB_OK; i++)
@@ -213,6 +227,9 @@ planet_view planet_view_of(const planet_state *state, const planet_params *param
     float turn = params->turn * degree;
     if (params->day > 0.0f)
         turn += planet_loop_time(time, params->day) / params->day * AMB_TWO_PI;
+    v3 ray = v3_add(v3_scale(camera->ray_dx, 0.5f * (float)canvas->width),
+                    v3_scale(camera->ray_dy, 0.5f * (float)canvas->height));
+    float middle = v3_length(v3_add(camera->ray_origin, ray));
     float azimuth = params->sun_azimuth * degree, elevation = params->sun_elevation * degree;
     planet_view view = {
         .world_to_clip = camera->world_to_clip,
@@ -229,6 +246,10 @@ planet_view planet_view_of(const planet_state *state, const planet_params *param
         .show = params->show,
         .sphere = state->sphere,
         .stars = state->stars,
+        .points = state->points,
+        .size = {(float)canvas->width, (float)canvas->height},
+        .sample_angle = v3_length(camera->ray_dy) / middle,
+        .star_radius = 0.75f * (float)canvas->factor,
     };
     for (int i = 0; i < 3; i++)
         view.axis[i] =
@@ -246,6 +267,19 @@ planet_view planet_view_at(const planet_state *state, const planet_params *param
     return planet_view_of(state, params, job->time, canvas, &camera);
 }
 
+amb_status planet_sky_draw(amb_pass *pass, const planet_sky *sky, const planet_view *view, amb_error *error)
+{
+    amb_draw background = sky->background, points = sky->points;
+    background.uniforms = points.uniforms = view;
+    background.uniforms_size = points.uniforms_size = sizeof *view;
+    amb_status status = amb_pass_draw(pass, &background, error);
+    if (status != AMB_OK || !view->points || !(view->star_gain > 0.0f))
+        return status;
+    points.count = view->points->vertex_count;
+    points.point_size = 2.0f * __builtin_ceilf(2.2f * view->star_radius) + 1.0f;
+    return amb_pass_draw(pass, &points, error);
+}
+
 amb_status planet_frame(const void *state, const amb_scene_job *job, amb_error *error)
 {
     const planet_state *s = state;
@@ -256,11 +290,8 @@ amb_status planet_frame(const void *state, const amb_scene_job *job, amb_error *
     if (status != AMB_OK)
         return status;
     planet_view view = planet_view_at(s, params, job, &canvas, body->flight);
-    amb_draw background = *body->background;
-    background.uniforms = &view;
-    background.uniforms_size = sizeof view;
     if (params->show == PLANET_SHOW_BEAUTY)
-        status = amb_pass_draw(canvas.pass, &background, error);
+        status = planet_sky_draw(canvas.pass, body->sky, &view, error);
     if (status == AMB_OK)
         status = body->draw(state, job->params, &view, job->time, canvas.pass, error);
     return canvas_finish(job, body->aovs, &canvas, status, error);

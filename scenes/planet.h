@@ -30,7 +30,7 @@ typedef struct planet_params {
 } planet_params;
 #define PLANET_FIELD(type, name) offsetof(type, name)
 /* Rows for the table of a struct `type` whose first member is `planet`; defaults as given. */
-#define PLANET_PARAM_ROWS(type, azimuth, elevation, turn_at_0, seconds_a_turn, axis_tilt)                          \
+#define PLANET_PARAM_ROWS(type, azimuth, elevation, turn_at_0, seconds_a_turn, axis_tilt, exposed)                 \
     {"sun_azimuth",                                                                                                \
      AMB_PARAM_FLOAT,                                                                                              \
      "degrees",                                                                                                    \
@@ -81,7 +81,7 @@ typedef struct planet_params {
          "",                                                                                                       \
          0,                                                                                                        \
          100,                                                                                                      \
-         {3.0f},                                                                                                   \
+         {exposed},                                                                                                \
          NULL,                                                                                                     \
          offsetof(type, planet.exposure),                                                                          \
          "factor on the sun's light"},                                                                             \
@@ -120,6 +120,10 @@ typedef struct planet_view {
     int show;
     const amb_mesh *sphere;
     const amb_texture *stars;
+    const amb_mesh *points; /* stars that are not in `stars`: directions, light as normals; NULL: none */
+    v2 size;                /* of the picture, samples */
+    float sample_angle;     /* radians from one sample to the next in the middle of the picture */
+    float star_radius;      /* samples at which a point has fallen to 1/e */
     int slot[CANVAS_MAX_AOVS];
 } planet_view;
 
@@ -136,7 +140,13 @@ typedef struct planet_state {
     const struct planet_body *body;
     amb_mesh *sphere;
     const amb_texture *stars;
+    const amb_mesh *points;
 } planet_state;
+
+/* Draws of the sky, whose uniforms are a planet_view: a full-screen one, and points over it. */
+typedef struct planet_sky {
+    amb_draw background, points;
+} planet_sky;
 
 /* An asset and where the state keeps it: a const amb_texture *. */
 typedef struct planet_map_row {
@@ -162,8 +172,8 @@ typedef struct planet_body {
     /* Records everything but the background; `view` is the body's own: it is at the origin, its radius 1. */
     amb_status (*draw)(const void *state, const void *params, const planet_view *view, double time, amb_pass *pass,
                        amb_error *error);
-    /* Of its own scene: a full-screen draw whose uniforms are a planet_view, outputs, flight. */
-    const amb_draw *background;
+    /* Of its own scene: how to draw the sky, outputs, flight. */
+    const planet_sky *sky;
     const amb_aov *aovs;
     size_t aov_count;
     const planet_flight *flight;
@@ -173,6 +183,9 @@ typedef struct planet_body {
 amb_status planet_load(const planet_body *body, const amb_context *context, amb_assets *assets, void **state,
                        amb_error *error);
 void planet_unload(void *state); /* NULL is allowed */
+
+/* Records the sky of a view. */
+amb_status planet_sky_draw(amb_pass *pass, const planet_sky *sky, const planet_view *view, amb_error *error);
 
 /* The whole of a one-body scene's frame: canvas, background, the body. */
 amb_status planet_frame(const void *state, const amb_scene_job *job, amb_error *error);

@@ -106,10 +106,11 @@ static amb_atmosphere planet_atmosphere(const planet_air_params *p, v3 sun_rgb)
     return air;
 }
 
-/* Sunlight left at the ground's height under a zenith cosine: reddens the ground at the terminator. */
+/* Light that reaches the ground's height under a sun of that zenith cosine: of what is scattered out of the sun's rays
+ * about half comes down as skylight, so depth counts half. Reddens the ground at the terminator. */
 AMB_INLINE v3x planet_sunlight_at_ground(const amb_atmosphere *air, f32x zenith_cosine)
 {
-    f32x depth = atmosphere_depth(air, f_set(1.0f), f_max(zenith_cosine, f_set(-0.03f)));
+    f32x depth = 0.5f * atmosphere_depth(air, f_set(1.0f), f_max(zenith_cosine, f_set(-0.03f)));
     v3x scatter = v3x_splat(v3_add(air->rayleigh, air->mie));
     return (v3x){f_exp(-scatter.x * depth), f_exp(-scatter.y * depth), f_exp(-scatter.z * depth)};
 }

@@ -168,13 +168,56 @@ AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(light, f_set(1.0f));
 }
 
-/* A full-screen draw of the background, for planet_body; only colour is written. */
-static const amb_draw planet_background_draw = {.label = "stars",
-                                                .lanes = AMB_LANES,
-                                                .fragment = planet_background,
-                                                .depth_compare = AMB_ALWAYS,
-                                                .depth_write_off = true,
-                                                .targets_off = ~1u};
+typedef struct planet_star_varyings {
+    f32x x, y; /* window coordinates of the star */
+    v3x light; /* at its middle */
+} planet_star_varyings;
+
+/* A star shines into a disc of some samples, whatever their size: a narrower view shows it brighter, as a telescope. */
+AMB_INLINE void planet_star_vertex(const amb_vs_in *in, amb_vs_out *out)
+{
+    const planet_view *view = in->uniforms;
+    planet_star_varyings *v = out->varyings;
+    v3x d = v3x_gather(view->points->position, in->vertex), flux = v3x_gather(view->points->normal, in->vertex);
+    m4 turn = view->world_to_clip;
+    f32x x = v3x_dot(d, v3x_splat((v3){turn.row[0].x, turn.row[0].y, turn.row[0].z}));
+    f32x y = v3x_dot(d, v3x_splat((v3){turn.row[1].x, turn.row[1].y, turn.row[1].z}));
+    f32x w = v3x_dot(d, v3x_splat((v3){turn.row[3].x, turn.row[3].y, turn.row[3].z}));
+    float radius = view->star_radius * view->sample_angle * 1000.0f; /* milliradians */
+    v->x = (x / w + 1.0f) * (0.5f * view->size.x);
+    v->y = (1.0f - y / w) * (0.5f * view->size.y);
+    v->light = v3x_scale(flux, f_set(view->star_gain / (AMB_PI * radius * radius)));
+    out->clip = (v4x){x, y, w * 0.5f, w};
+}
+
+AMB_INLINE void planet_star_fragment(const amb_fs_in *in, amb_fs_out *out)
+{
+    const planet_view *view = in->uniforms;
+    const planet_star_varyings *v = in->varyings;
+    f32x dx = in->x - v->x, dy = in->y - v->y;
+    f32x spot = f_exp((dx * dx + dy * dy) * (-1.0f / (view->star_radius * view->star_radius)));
+    out->color[0] = v4x_of3(v3x_scale(v->light, spot), f_set(0.0f));
+}
+
+/* Only colour is written. */
+static const planet_sky planet_sky_of_stars = {
+    .background = {.label = "sky",
+                   .lanes = AMB_LANES,
+                   .fragment = planet_background,
+                   .depth_compare = AMB_ALWAYS,
+                   .depth_write_off = true,
+                   .targets_off = ~1u},
+    .points = {.label = "stars",
+               .lanes = AMB_LANES,
+               .vertex = planet_star_vertex,
+               .fragment = planet_star_fragment,
+               .varying_floats = sizeof(planet_star_varyings) / sizeof(f32x),
+               .topology = AMB_POINTS,
+               .depth_compare = AMB_ALWAYS,
+               .depth_write_off = true,
+               .blend = {AMB_BLEND_ADD},
+               .targets_off = ~1u},
+};
 
 /* A draw of one shell; the caller sets shaders' uniforms, blending and what differs. */
 AMB_INLINE amb_draw planet_shell_draw(const char *label, amb_vertex_shader vertex, amb_fragment_shader fragment,

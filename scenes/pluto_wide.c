@@ -4,7 +4,7 @@
 extern const planet_body WIDE(planet_pluto);
 
 static const amb_param pluto_table[] = {
-    PLANET_PARAM_ROWS(airy_params, -86, 14, 70, 400, -20),
+    PLANET_PARAM_ROWS(airy_params, -86, 14, 70, 400, -20, 1.05f),
     PLANET_SURFACE_ROWS(airy_params, 0.12f, 0.8f, 0.85f, 0.92f, 1.0f, 0, 4, 0.8f, 0, 0.5f),
     PLANET_AIR_ROWS(airy_params, 0.05f, 0.012f, 0.020f, 0.034f, 0.060f, 0.01f, 0.55f, 0.8f, 0.92f, 1.0f, 0.5f, 0.7f),
     AIRY_ROW,
@@ -19,7 +19,7 @@ const planet_body WIDE(planet_pluto) = {
               .from = offsetof(airy_state, colour),
               .relief = {.strength = 3.0f, .octaves = 4, .gain = 1.2f, .wrap_u = true, .longitude_latitude = true}}},
     .draw = airy_draw,
-    .background = &planet_background_draw,
+    .sky = &planet_sky_of_stars,
     .aovs = airy_aovs,
     .aov_count = PLANET_AOVS,
     .flight = &planet_flight_ball,
@@ -37,7 +37,7 @@ const amb_scene WIDE(amb_scene_pluto) = {
     .params = {pluto_table, sizeof pluto_table / sizeof *pluto_table, sizeof(airy_params)},
     .aovs = airy_aovs,
     .aov_count = PLANET_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=aces",
     .load = pluto_load,
     .frame = planet_frame,
     .unload = planet_unload,

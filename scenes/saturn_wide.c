@@ -12,7 +12,7 @@ typedef struct saturn_params {
 } saturn_params;
 
 static const amb_param saturn_table[] = {
-    PLANET_PARAM_ROWS(saturn_params, -66, 14, 0, 120, 22),
+    PLANET_PARAM_ROWS(saturn_params, -66, 14, 0, 120, 22, 1.0f),
     PLANET_SURFACE_ROWS(saturn_params, 0.18f, 0.85f, 0.66f, 0.82f, 0.78f, 0.5f, 2.4f, 0, 0, 0),
     {"oblateness",
      AMB_PARAM_FLOAT,
@@ -92,7 +92,7 @@ const planet_body WIDE(planet_saturn) = {
             {"saturn/rings", offsetof(saturn_state, rings)},
             {"saturn/scatter", offsetof(saturn_state, scatter)}},
     .draw = saturn_draw,
-    .background = &planet_background_draw,
+    .sky = &planet_sky_of_stars,
     .aovs = saturn_aovs,
     .aov_count = PLANET_AOVS,
     .flight = &planet_flight_rings,
@@ -110,7 +110,7 @@ const amb_scene WIDE(amb_scene_saturn) = {
     .params = {saturn_table, sizeof saturn_table / sizeof *saturn_table, sizeof(saturn_params)},
     .aovs = saturn_aovs,
     .aov_count = PLANET_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=aces",
     .load = saturn_load,
     .frame = planet_frame,
     .unload = planet_unload,

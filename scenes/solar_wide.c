@@ -207,10 +207,7 @@ static amb_status solar_draw(const solar_state *state, const amb_scene_job *job,
     far_to_near(seen, place, count);
 
     planet_view sky = planet_view_of(state->body[0], &p->planet, job->time, canvas, &camera);
-    amb_draw draw = planet_background_draw;
-    draw.uniforms = &sky;
-    draw.uniforms_size = sizeof sky;
-    amb_status status = amb_pass_draw(canvas->pass, &draw, error);
+    amb_status status = planet_sky_draw(canvas->pass, &planet_sky_of_stars, &sky, error);
     for (int i = 0; i < count && status == AMB_OK; i++) {
         int b = seen[i].body;
         planet_view view = planet_view_of(state->body[b], state->params[b], job->time, canvas, &seen[i].camera);
@@ -222,6 +219,7 @@ static amb_status solar_draw(const solar_state *state, const amb_scene_job *job,
         status = bodies[b].body->draw(state->body[b], state->params[b], &view, job->time, canvas->pass, error);
     }
     solar_fade fade = {solar_fade_at(p, time)};
+    amb_draw draw = planet_sky_of_stars.background;
     draw.label = "fade";
     draw.fragment = solar_fade_fragment;
     draw.uniforms = &fade;
@@ -247,7 +245,7 @@ const amb_scene WIDE(amb_scene_solar) = {
     .params = {solar_table, sizeof solar_table / sizeof *solar_table, sizeof(solar_params)},
     .aovs = solar_aovs,
     .aov_count = PLANET_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.35;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.35;display:curve=aces",
     .load = solar_load,
     .frame = solar_frame,
     .unload = solar_unload,

@@ -12,7 +12,7 @@ typedef struct uranus_params {
 } uranus_params;
 
 static const amb_param uranus_table[] = {
-    PLANET_PARAM_ROWS(uranus_params, -70, 6, 0, 200, 82),
+    PLANET_PARAM_ROWS(uranus_params, -70, 6, 0, 200, 82, 1.0f),
     PLANET_SURFACE_ROWS(uranus_params, 0.20f, 0.85f, 0.70f, 0.92f, 1.0f, 0.45f, 2.2f, 0, 0, 0),
     {"oblateness",
      AMB_PARAM_FLOAT,
@@ -64,7 +64,7 @@ const planet_body WIDE(planet_uranus) = {
     .state_bytes = sizeof(uranus_state),
     .map = {{"uranus/color", offsetof(uranus_state, colour)}, {"uranus/rings", offsetof(uranus_state, rings)}},
     .draw = uranus_draw,
-    .background = &planet_background_draw,
+    .sky = &planet_sky_of_stars,
     .aovs = uranus_aovs,
     .aov_count = PLANET_AOVS,
     .flight = &planet_flight_rings,
@@ -82,7 +82,7 @@ const amb_scene WIDE(amb_scene_uranus) = {
     .params = {uranus_table, sizeof uranus_table / sizeof *uranus_table, sizeof(uranus_params)},
     .aovs = uranus_aovs,
     .aov_count = PLANET_AOVS,
-    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=filmic",
+    .post = "bloom:threshold=1.0,intensity=0.25;display:curve=aces",
     .load = uranus_load,
     .frame = planet_frame,
     .unload = planet_unload,

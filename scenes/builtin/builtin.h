@@ -12,9 +12,12 @@ amb_status amb_builtin_sky(const amb_context *context, amb_texture **out, amb_er
 amb_status amb_builtin_studio(const amb_context *context, amb_texture **out,
                               amb_error *error); /* soft boxes, dark room */
 
-/* The night sky: RGBA16F, 4096 × 2048, mips; a panorama (its centre looks along -z, +x to the right) of 60,000 stars
- * and the Milky Way; linear radiance. */
+/* The night sky but its stars: the Milky Way, RGBA16F, 2048 × 1024, mips; a panorama (its centre looks along -z, +x to
+ * the right); linear radiance. */
 amb_status amb_builtin_stars(const amb_context *context, amb_texture **out, amb_error *error);
+/* 40,000 stars: positions are unit directions, normals their light, linear radiance times square milliradians. No
+ * triangles. */
+amb_status amb_builtin_star_points(const amb_context *context, amb_mesh **out, amb_error *error);
 /* The map of Mercury: sRGB8_A8, 4096 × 2048, longitude-latitude, north on top. */
 amb_status amb_builtin_mercury(const amb_context *context, amb_texture **out, amb_error *error);
 

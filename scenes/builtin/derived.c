@@ -41,6 +41,6 @@ amb_status amb_builtin_mars_relief(const amb_context *context, const amb_texture
                                    amb_error *error)
 {
     const amb_normal_map_options relief = {
-        .strength = 11.0f, .octaves = 4, .gain = 1.2f, .wrap_u = true, .longitude_latitude = true};
+        .strength = 26.0f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true};
     return planet_normal_texture(context, height, &relief, out, error);
 }

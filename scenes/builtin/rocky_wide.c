@@ -37,7 +37,7 @@ v4x WIDE(amb_venus_surface)(v3x direction, const void *user)
     return v4x_of3(colour, f_set(1.0f));
 }
 
-/* Dust plains, dark basalt, highlands; *cap is the share of polar ice. */
+/* Plains, highlands full of craters, clefts. */
 static f32x mars_height(v3x direction)
 {
     v3x bent = planet_swirl(direction, 1.8f, 0.12f, 111);
@@ -45,8 +45,11 @@ static f32x mars_height(v3x direction)
     f32x folds = planet_fbm(v3x_scale(bent, f_set(3.4f)), 113, 8);
     f32x canyon = 1.0f - f_saturate(f_abs(folds + 0.12f) * 14.0f); /* long winding clefts near one contour */
     f32x cleft = canyon * f_smoothstep(f_set(0.05f), f_set(0.35f), broad) * planet_bump(direction.y, -0.1f, 0.3f);
-    f32x rough = planet_fbm(v3x_scale(direction, f_set(16.0f)), 114, 6);
-    return f_saturate(0.5f + broad * 0.34f + folds * 0.10f + rough * 0.045f - cleft * 0.30f);
+    f32x rough = planet_fbm(v3x_scale(direction, f_set(16.0f)), 114, 7);
+    f32x old = f_smoothstep(f_set(-0.2f), f_set(0.35f), broad - direction.y * 0.35f);
+    f32x craters = 0.050f * planet_craters(v3x_scale(direction, f_set(7.0f)), 115) +
+                   0.026f * planet_craters(v3x_scale(direction, f_set(19.0f)), 116);
+    return f_saturate(0.5f + broad * 0.22f + folds * 0.06f + rough * 0.035f - cleft * 0.22f + craters * old);
 }
 
 v4x WIDE(amb_mars_height)(v3x direction, const void *user)
@@ -63,13 +66,13 @@ v4x WIDE(amb_mars_colour)(v3x direction, const void *user)
     v3x bent = planet_swirl(planet_swirl(direction, 2.3f, 0.14f, 121), 6.0f, 0.03f, 122);
     f32x basalt = planet_fbm((v3x){bent.x * 2.0f, bent.y * 3.2f, bent.z * 2.0f}, 123, 9);
     f32x streaks = planet_fbm((v3x){bent.x * 9.0f, bent.y * 13.0f, bent.z * 9.0f}, 124, 6);
-    f32x dark = f_smoothstep(f_set(0.02f), f_set(0.55f), basalt + streaks * 0.12f - (height - 0.5f) * 0.7f);
-    v3x dust = planet_mix(v3x_splat((v3){0.42f, 0.155f, 0.055f}), (v3){0.60f, 0.29f, 0.125f},
-                          f_saturate(0.5f + streaks * 0.35f + (height - 0.5f) * 1.2f));
-    v3x colour = planet_mix(dust, (v3){0.115f, 0.055f, 0.035f}, dark * 0.82f);
+    f32x dark = f_smoothstep(f_set(0.0f), f_set(0.42f), basalt + streaks * 0.22f - (height - 0.5f) * 0.9f);
+    v3x dust = planet_mix(v3x_splat((v3){0.36f, 0.105f, 0.034f}), (v3){0.58f, 0.235f, 0.090f},
+                          f_saturate(0.5f + streaks * 0.40f + (height - 0.5f) * 2.4f));
+    v3x colour = planet_mix(dust, (v3){0.095f, 0.042f, 0.028f}, dark * 0.85f);
     f32x edge = planet_fbm(v3x_scale(direction, f_set(7.0f)), 125, 6) * 0.035f;
-    f32x north = f_smoothstep(f_set(0.935f), f_set(0.965f), direction.y + edge);
-    f32x south = f_smoothstep(f_set(0.955f), f_set(0.98f), -direction.y + edge);
+    f32x north = f_smoothstep(f_set(0.905f), f_set(0.93f), direction.y + edge);
+    f32x south = f_smoothstep(f_set(0.945f), f_set(0.965f), -direction.y + edge);
     colour = planet_mix(colour, (v3){0.82f, 0.80f, 0.78f}, f_max(north, south));
     return v4x_of3(colour, f_set(1.0f));
 }
@@ -96,12 +99,14 @@ v4x WIDE(amb_pluto_colour)(v3x direction, const void *user)
 {
     (void)user;
     f32x broad = planet_fbm(v3x_scale(planet_swirl(direction, 2.0f, 0.1f, 132), f_set(1.9f)), 133, 9);
-    f32x fine = planet_fbm(v3x_scale(direction, f_set(11.0f)), 134, 7);
+    f32x pits = planet_craters(v3x_scale(direction, f_set(8.0f)), 135) +
+                0.6f * planet_craters(v3x_scale(direction, f_set(21.0f)), 136);
+    f32x fine = planet_fbm(v3x_scale(direction, f_set(11.0f)), 134, 7) + pits * 0.32f * (1.0f - pluto_ice(direction));
     f32x tholin =
         f_smoothstep(f_set(0.05f), f_set(0.35f), broad + planet_bump(direction.y, -0.12f, 0.3f) * 0.34f - 0.10f);
     v3x high = planet_mix(v3x_splat((v3){0.40f, 0.30f, 0.21f}), (v3){0.62f, 0.54f, 0.44f},
                           f_saturate(0.5f + 0.5f * fine + broad * 0.3f));
-    v3x colour = planet_mix(high, (v3){0.085f, 0.045f, 0.028f}, tholin * 0.85f);
+    v3x colour = planet_mix(high, (v3){0.085f, 0.040f, 0.024f}, f_saturate(tholin * (0.80f + 0.25f * fine)));
     v3x ice = planet_mix(v3x_splat((v3){0.74f, 0.68f, 0.58f}), (v3){0.88f, 0.86f, 0.81f}, f_saturate(0.5f + fine));
     return v4x_of3(v3x_lerp(colour, ice, pluto_ice(direction)), f_set(1.0f));
 }
