@@ -10,6 +10,8 @@
 #define LOOKUP_SLOTS 32768
 
 AMB_DECLARE_WIDE(void, raster_vertices, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
+AMB_DECLARE_WIDE(void, raster_domain, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
+AMB_DECLARE_WIDE(void, raster_geometry, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_setup, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_tile, (const amb_pass *pass, int tile, raster_scratch *scratch, int thread));
 
@@ -34,25 +36,55 @@ static int32_t *make_packing(uint32_t lanes)
 
 static bool make_scratch(const amb_pass *pass, raster_scratch *s)
 {
-    const size_t vertices = RASTER_CHUNK_VERTICES + 16, triangles = RASTER_CHUNK_TRIANGLES + 16; /* lanes of padding */
-    const size_t spare = (size_t)16 * (size_t)pass->planes * (size_t)pass->samples;              /* a block */
+    const size_t vertices = RASTER_CHUNK_VERTICES + 16, corners = RASTER_CHUNK_EMITTED + 16; /* lanes of padding */
+    const size_t spare = (size_t)16 * (size_t)pass->planes * (size_t)pass->samples;          /* a block */
     s->lookup = calloc(LOOKUP_SLOTS, sizeof *s->lookup);
     s->index = malloc(vertices * sizeof *s->index);
     s->instance = malloc(vertices * sizeof *s->instance);
     s->clip_x = malloc(4 * vertices * sizeof *s->clip_x);
     s->code = malloc(vertices * sizeof *s->code);
-    s->corner[0] = malloc(4 * triangles * sizeof *s->corner[0]);
+    s->corner_memory = malloc(4 * corners * sizeof *s->corner_memory);
     s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
     s->tile = aligned_alloc(64, (raster_tile_floats(pass) + spare) * sizeof *s->tile);
     s->packing = make_packing((uint32_t)amb_context_isa(pass->context));
-    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner[0] || !s->group || !s->tile ||
-        !s->packing)
+    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->group ||
+        !s->tile || !s->packing)
         return false;
     s->clip_y = s->clip_x + vertices;
     s->clip_z = s->clip_y + vertices;
     s->clip_w = s->clip_z + vertices;
-    for (int i = 1; i < 4; i++)
-        s->corner[i] = s->corner[i - 1] + triangles;
+    for (int i = 0; i < 4; i++)
+        s->corner[i] = s->corner_memory + (size_t)i * corners;
+    return true;
+}
+
+/* What patches need. */
+static bool make_patch_scratch(raster_scratch *s)
+{
+    const size_t vertices = RASTER_CHUNK_VERTICES + 16;
+    s->patch = malloc(vertices * sizeof *s->patch);
+    s->u = malloc(2 * vertices * sizeof *s->u);
+    s->seen = malloc(RASTER_PATTERN_POINTS * sizeof *s->seen);
+    s->patterns = calloc(1, sizeof *s->patterns);
+    s->constants = aligned_alloc(64, (size_t)AMB_MAX_PATCH_FLOATS * 16 * sizeof *s->constants);
+    s->corners = aligned_alloc(64, (size_t)AMB_MAX_PATCH_CORNERS * 16 * sizeof *s->corners);
+    if (!s->patch || !s->u || !s->seen || !s->patterns || !s->constants || !s->corners)
+        return false;
+    s->v = s->u + vertices;
+    return true;
+}
+
+/* What geometry shaders need: primary: floats of a vertex that goes in; emitted: of all that one primitive emits. */
+static bool make_geometry_scratch(raster_scratch *s, size_t primary, size_t emitted)
+{
+    const size_t corners = RASTER_CHUNK_EMITTED + 16;
+    s->primary = malloc(primary * (RASTER_CHUNK_VERTICES + 16) * sizeof *s->primary);
+    s->emitted = calloc(emitted * 16, sizeof *s->emitted);
+    s->other_memory = malloc(4 * corners * sizeof *s->other_memory);
+    if (!s->primary || !s->emitted || !s->other_memory)
+        return false;
+    for (int i = 0; i < 4; i++)
+        s->other_corner[i] = s->other_memory + (size_t)i * corners;
     return true;
 }
 
@@ -63,10 +95,23 @@ static bool make_workers(amb_pass *pass)
     if (!pass->scratch)
         return false;
     pass->threads = threads;
-    for (int i = 0; i < threads; i++)
-        if (!make_scratch(pass, &pass->scratch[i]))
+    bool patches = false;
+    size_t primary = 0, emitted = 0;
+    for (size_t i = 0; i < pass->draw_count; i++) {
+        const amb_geometry *g = &pass->draw[i].state.geometry;
+        const size_t in = 4 + (size_t)g->input_floats,
+                     out = (4 + (size_t)pass->draw[i].state.varying_floats) * (size_t)g->vertices;
+        patches |= pass->draw[i].patches;
+        if (g->shader)
+            primary = in > primary ? in : primary, emitted = out > emitted ? out : emitted;
+    }
+    for (int i = 0; i < threads; i++) {
+        raster_scratch *s = &pass->scratch[i];
+        if (!make_scratch(pass, s) || (patches && !make_patch_scratch(s)) ||
+            (emitted > 0 && !make_geometry_scratch(s, primary, emitted)))
             return false;
-    return true;
+    }
+    return raster_make_patches(pass);
 }
 
 bool raster_reserve_vertices(raster_chunk *chunk, size_t count)
@@ -88,24 +133,41 @@ bool raster_reserve_triangles(raster_chunk *chunk, size_t count)
 
 /* ---- jobs ------------------------------------------------------------------------------------------------------- */
 
+/* Room for the vertices that the chunk's shaders make. */
+static bool reserve(raster_chunk *chunk, const raster_scratch *scratch)
+{
+    const amb_geometry *g = &chunk->draw->state.geometry;
+    size_t vertices = scratch->unique_count, triangles = scratch->corner_count;
+    if (g->shader)
+        vertices = triangles = (triangles + 15) / 16 * 16 * (size_t)g->vertices;
+    return raster_reserve_vertices(chunk, vertices + 16) && raster_reserve_triangles(chunk, triangles + 16);
+}
+
 static void chunk_job(void *user, int index, int thread)
 {
     amb_pass *pass = user;
-    raster_chunk *chunk = &pass->chunk[index];
+    raster_chunk *chunk = &pass->chunk[pass->chunks_ready + (size_t)index];
     raster_scratch *scratch = &pass->scratch[thread];
+    const amb_isa isa = amb_context_isa(pass->context);
     if (chunk->count == 0)
         return;
     const bool timed = pass->target.time_stages;
     uint64_t lap = raster_start(timed);
-    raster_collect(chunk, scratch);
+    if (chunk->draw->patches)
+        raster_collect_patches(pass, chunk, scratch);
+    else
+        raster_collect(chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_CORNERS, lap);
-    if (!raster_reserve_vertices(chunk, (size_t)scratch->unique_count + 16) ||
-        !raster_reserve_triangles(chunk, (size_t)scratch->corner_count + 16)) {
+    if (scratch->failed || !reserve(chunk, scratch)) {
         scratch->failed = true;
         return;
     }
-    amb_isa isa = amb_context_isa(pass->context);
-    AMB_DISPATCH(isa, raster_vertices)(pass, chunk, scratch);
+    if (chunk->draw->patches)
+        AMB_DISPATCH(isa, raster_domain)(pass, chunk, scratch);
+    else
+        AMB_DISPATCH(isa, raster_vertices)(pass, chunk, scratch);
+    if (chunk->draw->state.geometry.shader)
+        AMB_DISPATCH(isa, raster_geometry)(pass, chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_VERTICES, lap);
     AMB_DISPATCH(isa, raster_setup)(pass, chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_SETUP, lap);
@@ -141,67 +203,82 @@ static bool any_failed(const amb_pass *pass)
     return false;
 }
 
+bool raster_ready_chunks(amb_pass *pass)
+{
+    amb_parallel_for(pass->context, (int)(pass->chunk_count - pass->chunks_ready), chunk_job, pass);
+    pass->chunks_ready = pass->chunk_count;
+    return !any_failed(pass);
+}
+
 static bool run_batch(amb_pass *pass, bool last)
 {
     if (pass->chunk_count == 0)
         return true;
     pass->last_batch = last;
-    amb_parallel_for(pass->context, (int)pass->chunk_count, chunk_job, pass);
-    if (any_failed(pass))
+    if (!raster_ready_chunks(pass))
         return false;
     amb_parallel_for(pass->context, pass->tiles_x * pass->tiles_y, tile_job, pass);
-    pass->chunk_count = 0;
+    pass->chunk_count = pass->chunks_ready = 0;
+    pass->bytes = 0;
     return !any_failed(pass);
 }
 
 /* ---- chunks and batches ----------------------------------------------------------------------------------------- */
 
 /* Bytes a chunk may come to hold: what the batch's budget counts. */
-static size_t chunk_bytes(const amb_pass *pass, uint32_t triangles, uint32_t stride)
+static size_t chunk_bytes(const amb_pass *pass, const raster_chunk *chunk)
 {
-    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
-    return (tiles + 1) * sizeof(uint32_t) + (size_t)triangles * (3 * (stride + 2) + 6 + 2) * sizeof(uint32_t);
+    const amb_geometry *g = &chunk->draw->state.geometry;
+    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y, triangles = chunk->count, vertices = 3 * triangles;
+    if (g->shader)
+        vertices = triangles *= (size_t)g->vertices;
+    return (tiles + 1) * sizeof(uint32_t) + (vertices * (chunk->stride + 2) + triangles * (6 + 2)) * sizeof(uint32_t);
 }
 
-static raster_chunk *next_chunk(amb_pass *pass)
+bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk)
 {
-    size_t before = pass->chunk_capacity;
+    raster_chunk next = *chunk;
+    next.stride = (RASTER_VERTEX_WORDS + (uint32_t)next.draw->state.varying_floats + 3) & ~3u;
+    const size_t more = chunk_bytes(pass, &next), before = pass->chunk_capacity;
+    const bool full =
+        pass->chunk_count == RASTER_BATCH_CHUNKS || (pass->chunk_count > 0 && pass->bytes + more > pass->batch_bytes);
+    if (full && !run_batch(pass, false))
+        return false;
     if (!raster_grow(&pass->chunk, &pass->chunk_capacity, pass->chunk_count + 1, sizeof *pass->chunk))
-        return NULL;
+        return false;
     memset(pass->chunk + before, 0, (pass->chunk_capacity - before) * sizeof *pass->chunk);
-    return &pass->chunk[pass->chunk_count++];
+    raster_chunk *slot = &pass->chunk[pass->chunk_count++];
+    slot->draw = next.draw;
+    slot->first = next.first, slot->count = next.count;
+    slot->patch = next.patch, slot->skipped = next.skipped;
+    slot->stride = next.stride;
+    slot->vertex_count = slot->triangle.count = slot->large_count = 0;
+    pass->bytes += more;
+    return true;
+}
+
+/* Draws of vertices, and full-screen ones: those are a chunk of no triangles. */
+static bool run_primitives(amb_pass *pass, const raster_draw *draw)
+{
+    raster_chunk chunk = {.draw = draw};
+    do {
+        uint64_t left = draw->triangles - chunk.first;
+        chunk.count = left < draw->chunk_most ? (uint32_t)left : draw->chunk_most;
+        if (!raster_add_chunk(pass, &chunk))
+            return false;
+        chunk.first += chunk.count;
+    } while (chunk.first < draw->triangles);
+    return true;
 }
 
 static bool run_draws(amb_pass *pass)
 {
-    size_t bytes = 0;
     for (size_t i = 0; i < pass->draw_count; i++) {
         const raster_draw *draw = &pass->draw[i];
-        uint32_t stride = (RASTER_VERTEX_WORDS + (uint32_t)draw->state.varying_floats + 3) & ~3u;
-        uint64_t first = 0;
-        if ((draw->state.vertex && draw->triangles == 0) || draw->x0 >= draw->x1 || draw->y0 >= draw->y1)
+        if ((!draw->screen && draw->triangles == 0) || draw->x0 >= draw->x1 || draw->y0 >= draw->y1)
             continue;
-        do {
-            uint64_t left = draw->triangles - first;
-            uint32_t count = left < RASTER_CHUNK_TRIANGLES ? (uint32_t)left : RASTER_CHUNK_TRIANGLES;
-            size_t more = chunk_bytes(pass, count, stride);
-            if (pass->chunk_count == RASTER_BATCH_CHUNKS ||
-                (pass->chunk_count > 0 && bytes + more > pass->batch_bytes)) {
-                if (!run_batch(pass, false))
-                    return false;
-                bytes = 0;
-            }
-            raster_chunk *chunk = next_chunk(pass);
-            if (!chunk)
-                return false;
-            bytes += more;
-            chunk->draw = draw;
-            chunk->first = first;
-            chunk->count = count;
-            chunk->stride = stride;
-            chunk->vertex_count = chunk->triangle.count = chunk->large_count = 0;
-            first += count;
-        } while (first < draw->triangles);
+        if (!(draw->patches ? raster_run_patches(pass, draw) : run_primitives(pass, draw)))
+            return false;
     }
     return run_batch(pass, true);
 }
@@ -227,11 +304,21 @@ static void clear_job(void *user, int index, int thread)
 static void sum_stats(const amb_pass *pass, amb_pass_stats *sum)
 {
     *sum = (amb_pass_stats){0};
-    for (size_t i = 0; i < pass->draw_count; i++)
-        sum->triangles_in += pass->draw[i].triangles;
+    for (size_t i = 0; i < pass->draw_count; i++) {
+        const raster_draw *draw = &pass->draw[i];
+        if (draw->patches)
+            sum->patches += draw->triangles;
+        else if (!draw->state.geometry.shader)
+            sum->triangles_in += draw->triangles;
+    }
     for (int i = 0; i < pass->threads; i++) {
         const amb_pass_stats *s = &pass->scratch[i].stats;
         sum->vertices += s->vertices;
+        sum->patches_culled += s->patches_culled;
+        sum->domain_points += s->domain_points;
+        sum->geometry_in += s->geometry_in;
+        sum->geometry_vertices += s->geometry_vertices;
+        sum->triangles_in += s->triangles_in;
         sum->triangles_clipped += s->triangles_clipped;
         sum->triangles_culled += s->triangles_culled;
         sum->triangles_binned += s->triangles_binned;

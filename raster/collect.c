@@ -82,7 +82,7 @@ static inline void collect(const raster_chunk *chunk, raster_scratch *scratch, a
                 scratch->corner[k][corners] =
                     k < count ? local_vertex(scratch, index[k], instance) : scratch->corner[k - 1][corners];
             scratch->corner[3][corners++] = (uint32_t)chunk->first + i;
-        } else {
+        } else if (!draw->state.geometry.shader) { /* whose primitives count when they come out */
             scratch->stats.triangles_culled++;
         }
         if (++primitive == draw->per_instance) {

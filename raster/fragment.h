@@ -38,7 +38,7 @@ static inline float depth_bias(const raster_shading *s)
     uint32_t exponent = bits >> 23 & 255u;
     bits = exponent > 23 ? (exponent - 23u) << 23 : 0; /* 2^(e - 23) */
     memcpy(&unit, &bits, sizeof unit);
-    if (draw->topology <= AMB_TRIANGLE_FAN && !draw->wireframe) {
+    if (!chunk->draw->lines && !chunk->draw->points) {
         /* Edge functions 1 and 2 change by a per pixel to the right and b per pixel down. */
         float a1 = (float)(chunk->y[v[2]] - chunk->y[v[0]]), b1 = (float)(chunk->x[v[0]] - chunk->x[v[2]]);
         float a2 = (float)(chunk->y[v[0]] - chunk->y[v[1]]), b2 = (float)(chunk->x[v[1]] - chunk->x[v[0]]);

@@ -2,7 +2,14 @@
  *
  *   pass.c        records draws and checks them; batch.c cuts them into chunks, runs batches of chunks, then the tiles
  *   collect.c     gathers a chunk's corners, each vertex once
- *   vertex_wide.c shades those vertices and takes them to the window
+ *   vertex_wide.c shades those vertices
+ *     or, for patches:
+ *   hull_wide.c   shades a window of patches; patches.c cuts it into chunks of bounded size
+ *   tessellate.c  places points and triangles in each patch's domain; patches.c gathers a chunk's
+ *   domain_wide.c shades those points
+ *     then, for both:
+ *   geometry_wide.c runs the geometry shader, if there is one, over the chunk's primitives
+ *   vertex.h      takes vertices to the window
  *   setup_wide.c  drops, culls and bounds the chunk's triangles; setup.c clips (clip.c) those that need it
  *   bin.c         sorts them into the tiles they touch
  *   target.c      checks and clears attachments; formats.h says what they store
@@ -13,8 +20,7 @@
 #define AMBIANCE_RASTER_INTERNAL_H
 
 #include "raster/formats.h"
-
-#include <ambiance/raster.h>
+#include "raster/tessellate.h"
 
 #define RASTER_SUBPIXEL 256 /* fixed-point steps a pixel */
 #define RASTER_GUARD_PIXELS \
@@ -22,6 +28,10 @@
 #define RASTER_GRID_PIXELS 524288.0f /* window coordinates beyond are nowhere */
 #define RASTER_CHUNK_TRIANGLES 4096  /* triangles a chunk, before clipping */
 #define RASTER_CHUNK_VERTICES (3 * RASTER_CHUNK_TRIANGLES)
+#define RASTER_CHUNK_EMITTED 8192 /* vertices and primitives a chunk's geometry shader may emit */
+#define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
+#define RASTER_PATCH_WINDOW 16384 /* patches hull-shaded at a time, at most */
+#define RASTER_PATCH_BYTES ((size_t)8 << 20)
 #define RASTER_POLYGON 9      /* vertices of a triangle clipped by six planes */
 #define RASTER_LARGE_TILES 16 /* triangles on more tiles than this are not binned but offered to every tile */
 #define RASTER_MAX_TILE 128   /* pixels, tile edge */
@@ -46,10 +56,13 @@ enum {
 typedef struct raster_draw {
     amb_draw state;
     void *uniforms;        /* owned copy; NULL when there are none */
-    uint32_t per_instance; /* primitives */
-    uint64_t triangles;    /* primitives of all instances; 0 for full-screen draws */
+    uint32_t per_instance; /* primitives or patches, as they go in */
+    uint64_t triangles;    /* the same, of all instances; 0 for full-screen draws */
+    uint32_t chunk_most;   /* primitives of a chunk, before a geometry shader */
+    bool screen, patches;  /* what kind of draw */
     int x0, y0, x1, y1;    /* scissor inside the target, ends exclusive */
     bool lines, points;    /* what triangle-like records hold: wireframe draws are lines too */
+    bool wireframe;        /* lines that are edges of triangles */
 } raster_draw;
 
 /* A vertex after the vertex stage, without its window position; the varyings follow, and padding to a multiple of four
@@ -73,6 +86,9 @@ typedef struct raster_chunk {
     const raster_draw *draw;
     uint64_t first; /* triangle of the draw */
     uint32_t count; /* triangles; 0: a full-screen draw */
+    uint32_t
+        patch; /* or: first is 0, and from this patch of the window on, after `skipped` of its triangles, so many */
+    uint32_t skipped;
 
     int32_t *x, *y;   /* of the vertices: window, 1/256 pixel */
     uint32_t *vertex; /* raster_vertex records of `stride` words each */
@@ -96,9 +112,19 @@ typedef struct raster_scratch {
     uint64_t *lookup; /* index → local vertex: key, generation, local number */
     uint32_t generation;
     int32_t *index, *instance; /* of the chunk's unique vertices, padded to the lanes */
+    int32_t *patch;            /* of the chunk's points: number in the window */
+    float *u, *v;
+    uint16_t *seen; /* by point of a pattern: its local number + 1, where only a part of the patch is drawn */
+    raster_pattern_cache *patterns;
+    float *constants; /* of one group of points: what the hull shader wrote */
+    int32_t *corners; /* and its patches' index values */
+    float *primary;   /* clip position and varyings of vertices that go to a geometry shader */
+    float *emitted;   /* [vertex][clip position and varyings][lane] of one group of primitives */
     float *clip_x, *clip_y, *clip_z, *clip_w;
     int32_t *code;
     uint32_t *corner[4]; /* of the triangles: three local vertices, running number; padded to the lanes */
+    uint32_t *corner_memory, *other_memory;
+    uint32_t *other_corner[4]; /* room for what a geometry shader makes of them */
     uint32_t corner_count, unique_count;
     float *group;     /* varyings of one group of vertices, as the shader writes them */
     float *tile;      /* colour and depth of one tile, block by block */
@@ -118,6 +144,17 @@ typedef struct raster_attachment {
     float clear[4]; /* as stored; absent channels 0, alpha 1 */
     uint32_t clear_words[4];
 } raster_attachment;
+
+/* A window of a draw's patches after the hull stage, lane group by lane group. */
+typedef struct raster_patches {
+    const raster_draw *draw;
+    uint64_t first; /* patch of the draw */
+    uint32_t count;
+    raster_factors *factors;
+    uint32_t *primitives; /* that each will give */
+    float *constants;     /* [group][float][lane] */
+    int32_t *corners;     /* [group][corner][lane] */
+} raster_patches;
 
 struct amb_pass {
     const amb_context *context;
@@ -142,6 +179,9 @@ struct amb_pass {
 
     raster_chunk *chunk;
     size_t chunk_count, chunk_capacity; /* of the batch being run; those above keep their memory for the next */
+    size_t chunks_ready;                /* of those, through the geometry stages */
+    size_t bytes;                       /* what the batch's chunks may come to hold */
+    raster_patches patches;
     raster_scratch *scratch;
     int threads;
 };
@@ -165,6 +205,17 @@ void raster_clear_pixels(const raster_attachment *attachment, int x0, int y0, in
 /* Refreshes the borders of textures that were rendered into. */
 void raster_finish_textures(const amb_pass *pass);
 
+/* Adds a chunk to the batch, running the batch before that if it is full. */
+bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk);
+/* Takes the batch's chunks through the geometry stages. */
+bool raster_ready_chunks(amb_pass *pass);
+/* Memory for the largest window that the pass's draws need; false when out of memory. */
+bool raster_make_patches(amb_pass *pass);
+void raster_free_patches(amb_pass *pass);
+/* Shades a draw's patches, window by window, and adds their chunks. */
+bool raster_run_patches(amb_pass *pass, const raster_draw *draw);
+/* Points and corners of a chunk of patches. Sets scratch->failed. */
+void raster_collect_patches(const amb_pass *pass, const raster_chunk *chunk, raster_scratch *scratch);
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch);
 /* One triangle the lanes leave alone: clipped, or too large for 32-bit areas. Sets scratch->failed. */
 void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch, uint32_t corner);

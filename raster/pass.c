@@ -150,6 +150,9 @@ static amb_status check_output(const amb_pass *pass, const amb_draw *d, amb_erro
     return status;
 }
 
+/* A full-screen draw? */
+static bool is_screen(const amb_draw *d) { return !d->vertex && d->topology != AMB_PATCHES; }
+
 static amb_status check_state(const amb_pass *pass, const amb_draw *d, amb_error *error)
 {
     const char *label = label_of(d);
@@ -157,7 +160,7 @@ static amb_status check_state(const amb_pass *pass, const amb_draw *d, amb_error
     if (d->lanes != lanes)
         return amb_fail(error, AMB_ERROR_ISA, "draw '%s': its shaders were compiled for %d lanes, the context runs %d",
                         label, d->lanes, lanes);
-    if (!d->vertex && !d->fragment)
+    if (is_screen(d) && !d->fragment)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': a full-screen draw needs a fragment shader", label);
     if (d->writes_depth && !d->fragment)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': writes_depth needs a fragment shader", label);
@@ -183,16 +186,74 @@ static uint32_t primitives_of(const amb_draw *d)
         return d->count < 2 ? 0 : d->count - 1;
     case AMB_POINTS:
         return d->count;
+    case AMB_PATCHES:
+        return d->count / (uint32_t)d->tessellation.corners;
     default:
         return d->count / 3;
     }
 }
 
+static amb_status check_range(const amb_draw *d, const char *field, int value, int first, int last, amb_error *error)
+{
+    if (value >= first && value <= last)
+        return AMB_OK;
+    return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': %s is %d; %d to %d are allowed", label_of(d), field, value,
+                    first, last);
+}
+
+static amb_status check_tessellation(const amb_draw *d, amb_error *error)
+{
+    const amb_tessellation *t = &d->tessellation;
+    if (d->topology != AMB_PATCHES) {
+        if (t->hull || t->domain)
+            return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': a %s shader needs the topology AMB_PATCHES",
+                            label_of(d), t->hull ? "hull" : "domain");
+        return AMB_OK;
+    }
+    if (d->vertex)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': patches have no vertex shader; it must be NULL",
+                        label_of(d));
+    if (!t->hull || !t->domain)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': patches need a %s shader", label_of(d),
+                        t->hull ? "domain" : "hull");
+    amb_status status = check_range(d, "tessellation.corners", t->corners, 1, AMB_MAX_PATCH_CORNERS, error);
+    if (status == AMB_OK)
+        status = check_range(d, "tessellation.patch_floats", t->patch_floats, 0, AMB_MAX_PATCH_FLOATS, error);
+    if (status == AMB_OK)
+        status = check_choice(d, "tessellation.shape", (int)t->shape, AMB_TRIANGLE, error);
+    if (status == AMB_OK)
+        status = check_choice(d, "tessellation.partitioning", (int)t->partitioning, AMB_FRACTIONAL_EVEN, error);
+    return status;
+}
+
+static amb_status check_geometry_shader(const amb_draw *d, amb_error *error)
+{
+    const amb_geometry *g = &d->geometry;
+    if (!g->shader)
+        return AMB_OK;
+    if (is_screen(d))
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': a full-screen draw cannot have a geometry shader",
+                        label_of(d));
+    if (g->output != AMB_TRIANGLES && g->output != AMB_LINES && g->output != AMB_POINTS)
+        return amb_fail(error, AMB_ERROR_ARGUMENT,
+                        "draw '%s': geometry.output is %d; AMB_TRIANGLES, AMB_LINES and AMB_POINTS are allowed",
+                        label_of(d), (int)g->output);
+    amb_status status = check_range(d, "geometry.vertices", g->vertices, 1, AMB_MAX_GEOMETRY_VERTICES, error);
+    if (status == AMB_OK)
+        status = check_range(d, "geometry.input_floats", g->input_floats, 0, AMB_MAX_VARYINGS, error);
+    return status;
+}
+
 static amb_status check_geometry(const amb_draw *d, amb_error *error)
 {
     const char *label = label_of(d);
-    if (!d->vertex)
-        return AMB_OK;
+    amb_status status = check_choice(d, "topology", (int)d->topology, AMB_PATCHES, error);
+    if (status == AMB_OK)
+        status = check_tessellation(d, error);
+    if (status == AMB_OK)
+        status = check_geometry_shader(d, error);
+    if (status != AMB_OK || is_screen(d))
+        return status;
     if (d->indices && d->vertex_count == 0)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': an indexed draw needs vertex_count above 0", label);
     if (!d->indices && d->vertex_count != 0)
@@ -203,9 +264,6 @@ static amb_status check_geometry(const amb_draw *d, amb_error *error)
                         INT32_MAX);
     if (!d->indices && d->count > (uint32_t)INT32_MAX)
         return amb_fail(error, AMB_ERROR_LIMIT, "draw '%s': count %u is above %d", label, d->count, INT32_MAX);
-    amb_status status = check_choice(d, "topology", (int)d->topology, AMB_POINTS, error);
-    if (status != AMB_OK)
-        return status;
     if (!(d->point_size >= 0.0f && d->point_size <= RASTER_MAX_POINT))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "draw '%s': point_size is %g; 0 to %g are allowed", label,
                         (double)d->point_size, (double)RASTER_MAX_POINT);
@@ -226,6 +284,32 @@ static void set_scissor(const amb_pass *pass, raster_draw *draw)
     draw->y0 = whole ? 0 : clamp_to(r->y, pass->height);
     draw->x1 = whole ? pass->width : clamp_to((int64_t)r->x + r->width, pass->width);
     draw->y1 = whole ? pass->height : clamp_to((int64_t)r->y + r->height, pass->height);
+}
+
+/* What goes in, what comes out, how much of it at a time. */
+static void set_primitives(raster_draw *record)
+{
+    amb_draw *draw = &record->state;
+    record->screen = is_screen(draw);
+    if (record->screen)
+        return;
+    amb_topology out = draw->topology;
+    record->patches = draw->topology == AMB_PATCHES;
+    if (record->patches)
+        out = draw->tessellation.points ? AMB_POINTS : AMB_TRIANGLES;
+    record->chunk_most = RASTER_CHUNK_TRIANGLES;
+    if (draw->geometry.shader) {
+        uint32_t fit = RASTER_CHUNK_EMITTED / (uint32_t)draw->geometry.vertices & ~15u; /* whole groups of lanes */
+        record->chunk_most = fit < RASTER_CHUNK_TRIANGLES ? fit : RASTER_CHUNK_TRIANGLES;
+        out = draw->geometry.output;
+        if (draw->geometry.input_floats == 0)
+            draw->geometry.input_floats = draw->varying_floats;
+    }
+    record->per_instance = primitives_of(draw);
+    record->triangles = (uint64_t)record->per_instance * (draw->instances ? draw->instances : 1);
+    record->points = out == AMB_POINTS;
+    record->wireframe = draw->wireframe && out <= AMB_TRIANGLE_FAN;
+    record->lines = record->wireframe || out == AMB_LINES || out == AMB_LINE_STRIP;
 }
 
 amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
@@ -249,17 +333,12 @@ amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
         memcpy(record.uniforms, draw->uniforms, draw->uniforms_size);
     }
     set_scissor(pass, &record);
-    if (draw->vertex) {
-        record.per_instance = primitives_of(draw);
-        record.points = draw->topology == AMB_POINTS;
-        record.lines = !record.points && (draw->topology >= AMB_LINES || draw->wireframe);
-        record.triangles = (uint64_t)record.per_instance * (draw->instances ? draw->instances : 1);
-    }
+    set_primitives(&record);
     record.state.uniforms = record.uniforms;
     if (!pass->depth.image && !pass->depth.texture)
         record.state.depth_compare = AMB_ALWAYS;
     else if (draw->depth_compare == AMB_COMPARE_DEFAULT)
-        record.state.depth_compare = draw->vertex ? AMB_LESS : AMB_LESS_EQUAL;
+        record.state.depth_compare = record.screen ? AMB_LESS_EQUAL : AMB_LESS;
     pass->draw[pass->draw_count++] = record;
     return AMB_OK;
 }
@@ -286,10 +365,21 @@ static void free_scratch(raster_scratch *scratch)
     free(scratch->instance);
     free(scratch->clip_x);
     free(scratch->code);
-    free(scratch->corner[0]);
+    free(scratch->corner_memory);
+    free(scratch->other_memory);
     free(scratch->group);
     free(scratch->tile);
     free(scratch->packing);
+    free(scratch->patch);
+    free(scratch->u);
+    free(scratch->seen);
+    for (int i = 0; scratch->patterns && i < RASTER_PATTERN_SLOTS; i++)
+        raster_free_pattern(&scratch->patterns->slot[i]);
+    free(scratch->patterns);
+    free(scratch->constants);
+    free(scratch->corners);
+    free(scratch->primary);
+    free(scratch->emitted);
 }
 
 void amb_pass_close(amb_pass **pass)
@@ -306,6 +396,7 @@ void amb_pass_close(amb_pass **pass)
     for (int i = 0; p->tile_store && i < p->tiles_x * p->tiles_y; i++)
         free(p->tile_store[i]);
     free(p->tile_store);
+    raster_free_patches(p);
     free(p->draw);
     free(p->chunk);
     free(p->scratch);

@@ -100,7 +100,7 @@ void raster_setup_lines(const amb_pass *pass, raster_chunk *chunk, raster_scratc
             scratch->failed = true;
             return;
         }
-        if (draw->lines && draw->state.topology <= AMB_TRIANGLE_FAN)
+        if (draw->wireframe)
             setup_wireframe(pass, chunk, scratch, v, primitive);
         else if (draw->lines)
             setup_line(pass, chunk, scratch, v[0], v[1], primitive | 1u << 31);

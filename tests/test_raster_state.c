@@ -441,7 +441,7 @@ static void bad_draws_are_refused(void **state)
     d.indices = (const uint32_t[3]){0}, refuse(pass, &d, AMB_ERROR_ARGUMENT, "vertex_count"), d = good;
     d.count = UINT32_MAX, refuse(pass, &d, AMB_ERROR_LIMIT, "count"), d = good;
     d.count = 3000000, d.instances = 3000, refuse(pass, &d, AMB_ERROR_LIMIT, "instances"), d = good;
-    d.topology = (amb_topology)6, refuse(pass, &d, AMB_ERROR_ARGUMENT, "topology is 6"), d = good;
+    d.topology = (amb_topology)7, refuse(pass, &d, AMB_ERROR_ARGUMENT, "topology is 7"), d = good;
     d.point_size = -1, refuse(pass, &d, AMB_ERROR_ARGUMENT, "point_size is -1"), d = good;
     d.point_size = NAN, refuse(pass, &d, AMB_ERROR_ARGUMENT, "point_size"), d = good;
     d.scissor.width = -3, refuse(pass, &d, AMB_ERROR_ARGUMENT, "-3×0"), d = good;

@@ -16,6 +16,9 @@
 
 #define AMB_MAX_TARGETS 16  /* colour attachments (AOVs among them) of one pass */
 #define AMB_MAX_VARYINGS 64 /* floats a vertex */
+#define AMB_MAX_PATCH_CORNERS 32
+#define AMB_MAX_PATCH_FLOATS 128
+#define AMB_MAX_GEOMETRY_VERTICES 256
 
 /* ---- shaders ---------------------------------------------------------------------------------------------------- */
 
@@ -37,7 +40,7 @@ typedef struct amb_fs_in {
     f32x depth;           /* 0…1; for full-screen draws the far plane, 1 */
     maskx live;           /* covered lanes that passed the early depth test; others are helpers for derivatives */
     maskx front;          /* front face; lanes may belong to different triangles of the draw, quads never do */
-    i32x primitive;       /* running number of the triangle, line or point in its draw, before clipping */
+    i32x primitive;       /* running number of the triangle, line, point or patch in its draw, as it went in */
     int thread;           /* 0…threads-1, for per-thread scratch */
 } amb_fs_in;
 
@@ -50,6 +53,61 @@ typedef struct amb_fs_out {
 typedef void (*amb_vertex_shader)(const amb_vs_in *in, amb_vs_out *out);
 typedef void (*amb_fragment_shader)(const amb_fs_in *in, amb_fs_out *out);
 
+/* Tessellation: instead of a vertex shader, a hull shader sees every patch once and says how finely to cut it, and a
+ * domain shader makes a vertex of every point that the tessellator then places in the patch's domain. */
+
+typedef struct amb_hs_in { /* a patch a lane */
+    const void *uniforms;
+    const i32x *corner; /* [corners of a patch] index values; always valid, in dead lanes too */
+    i32x patch;         /* running number in the draw */
+    i32x instance;
+} amb_hs_in;
+
+/* Factors are how many segments: D3D11's rules. An edge factor that is NaN or not above 0 culls the patch; others are
+ * clamped to 1…64 (2…64 FRACTIONAL_EVEN, 1…63 FRACTIONAL_ODD).
+ *   AMB_QUAD      edge 0: u = 0, 1: v = 0, 2: u = 1, 3: v = 1; inside 0: along u, 1: along v
+ *   AMB_TRIANGLE  edge 0: u = 0, 1: v = 0, 2: w = 0; inside 0 */
+typedef struct amb_hs_out {
+    f32x edge[4], inside[2]; /* in: 1 */
+    void *constants;         /* the draw's patch struct of f32x members, zeroed, to be written */
+} amb_hs_out;
+
+typedef struct amb_ds_in { /* a point a lane; lanes may belong to different patches */
+    const void *uniforms;
+    const void *constants; /* as written by the hull shader, of each lane's own patch */
+    const i32x *corner;
+    i32x patch, instance;
+    f32x u, v, w; /* multiples of 1/65536 in 0…1, so 1 - u is exact. AMB_TRIANGLE: u + v + w = 1; AMB_QUAD: w = 0 */
+} amb_ds_in;
+
+typedef void (*amb_hull_shader)(const amb_hs_in *in, amb_hs_out *out);
+typedef void (*amb_domain_shader)(const amb_ds_in *in, amb_vs_out *out);
+
+/* The geometry stage: a shader sees whole primitives and emits up to a fixed number of vertices for each, as strips. */
+
+typedef struct amb_gs_in { /* a primitive a lane */
+    const void *uniforms;
+    v4x clip[3];             /* of its one, two or three corners, from the vertex or domain shader */
+    const void *varyings[3]; /* the draw's struct of f32x members */
+    i32x primitive;          /* running number of the triangle, line, point or patch in its draw */
+    maskx live;
+} amb_gs_in;
+
+typedef struct amb_gs_out {
+    v4x clip;       /* of the vertex to be emitted next; in: zero */
+    void *varyings; /* the struct of f32x members that the fragment shader gets; in: zeroed */
+    i32x count;     /* vertices emitted so far; at the draw's most, further ones are ignored */
+    void (*emit)(struct amb_gs_out *out, maskx live);
+    void (*cut)(struct amb_gs_out *out, maskx live);
+} amb_gs_out;
+
+/* Appends the vertex held by `out` to the strips of the live lanes. `out` keeps it. */
+AMB_INLINE void amb_emit(amb_gs_out *out, maskx live) { out->emit(out, live); }
+/* Ends the strips of the live lanes; their next vertex begins another. */
+AMB_INLINE void amb_cut(amb_gs_out *out, maskx live) { out->cut(out, live); }
+
+typedef void (*amb_geometry_shader)(const amb_gs_in *in, amb_gs_out *out);
+
 /* ---- state ------------------------------------------------------------------------------------------------------ */
 
 typedef enum amb_cull { AMB_CULL_NONE, AMB_CULL_BACK, AMB_CULL_FRONT } amb_cull;
@@ -60,7 +118,35 @@ typedef enum amb_topology {
     AMB_LINES,          /* 2i, 2i+1; one pixel wide, diamond-exit rule, never culled, always front */
     AMB_LINE_STRIP,     /* i, i+1 */
     AMB_POINTS,         /* i; squares of point_size, top-left rule, never culled, always front */
+    AMB_PATCHES,        /* n·i … n·i + n-1, with n corners; needs amb_draw.tessellation */
 } amb_topology;         /* an index at or above vertex_count drops what uses it, so it also cuts strips */
+
+typedef enum amb_patch_shape { AMB_QUAD, AMB_TRIANGLE } amb_patch_shape; /* of the domain */
+
+/* How a factor becomes segments. INTEGER: rounded up. FRACTIONAL: the next odd or even number; between them a point of
+ * each half edge splits in two and its halves drift apart, so that nothing jumps when a factor changes smoothly. */
+typedef enum amb_partitioning { AMB_INTEGER, AMB_FRACTIONAL_ODD, AMB_FRACTIONAL_EVEN } amb_partitioning;
+
+/* For AMB_PATCHES, without a vertex shader. Triangles come out patch by patch, in a fixed order, counter-clockwise in a
+ * picture of the domain with u to the right and v up (D3D11's triangle_cw, whose v points down). */
+typedef struct amb_tessellation {
+    amb_hull_shader hull;
+    amb_domain_shader domain;
+    int corners;      /* of a patch, 1…AMB_MAX_PATCH_CORNERS */
+    int patch_floats; /* sizeof(constants) / sizeof(f32x), 0…AMB_MAX_PATCH_FLOATS */
+    amb_patch_shape shape;
+    amb_partitioning partitioning;
+    bool clockwise; /* turn the triangles over */
+    bool points;    /* no triangles: every point of the domain once */
+} amb_tessellation;
+
+/* After the vertex or domain shader. Its input is the draw's topology, points or triangles of a tessellation. */
+typedef struct amb_geometry {
+    amb_geometry_shader shader;
+    amb_topology output; /* AMB_TRIANGLES: strips of triangles; AMB_LINES: line strips; AMB_POINTS */
+    int vertices;        /* the most one primitive emits, 1…AMB_MAX_GEOMETRY_VERTICES */
+    int input_floats;    /* sizeof(its input's varyings) / sizeof(f32x); 0: the draw's varying_floats */
+} amb_geometry;
 
 typedef enum amb_blend {
     AMB_BLEND_OFF,
@@ -132,7 +218,8 @@ typedef struct amb_rect {
 typedef struct amb_draw {
     const char *label;            /* for statistics and errors; static storage; may be NULL */
     int lanes;                    /* AMB_LANES of the file the shaders were compiled in */
-    amb_vertex_shader vertex;     /* NULL: a full-screen draw: every pixel once, no varyings, counts below ignored */
+    amb_vertex_shader vertex;     /* NULL and no tessellation: a full-screen draw: every pixel once, no varyings, counts
+                                   * below ignored */
     amb_fragment_shader fragment; /* NULL: depth only */
     const void *uniforms;
     size_t uniforms_size;    /* copied when recorded; pointers inside must outlive the pass */
@@ -152,6 +239,8 @@ typedef struct amb_draw {
     uint32_t targets_off; /* bit i: attachment i is not written */
 
     amb_topology topology;
+    amb_tessellation tessellation;
+    amb_geometry geometry;
     float point_size; /* pixels, 0 means 1; at most 4096 */
     bool wireframe;   /* triangles that are not culled are drawn as their three edges, by the line rule */
     amb_rect scissor; /* width and height 0: the whole target */
@@ -196,8 +285,8 @@ typedef struct amb_target {
 
 /* Where a pass spends its time. */
 typedef enum amb_stage {
-    AMB_STAGE_CORNERS,  /* gathering indices */
-    AMB_STAGE_VERTICES, /* vertex shader and what takes its results to the window */
+    AMB_STAGE_CORNERS,  /* gathering indices, tessellating */
+    AMB_STAGE_VERTICES, /* vertex, hull, domain and geometry shader, and what takes their results to the window */
     AMB_STAGE_SETUP,    /* culling, clipping, bounds */
     AMB_STAGE_BINS,
     AMB_STAGE_TILES,     /* tiles from and to images */
@@ -212,7 +301,12 @@ const char *amb_stage_name(amb_stage stage);
  * too. */
 typedef struct amb_pass_stats {
     uint64_t vertices; /* vertex shader lanes alive */
-    uint64_t triangles_in;
+    uint64_t patches;
+    uint64_t patches_culled;    /* by an index or a factor */
+    uint64_t domain_points;     /* domain shader lanes alive */
+    uint64_t geometry_in;       /* geometry shader lanes alive */
+    uint64_t geometry_vertices; /* emitted */
+    uint64_t triangles_in;      /* after tessellation and geometry shader */
     uint64_t triangles_clipped; /* cut by a plane */
     uint64_t triangles_culled;  /* dropped: bad index or vertex, outside, facing away, degenerate, on no pixel */
     uint64_t triangles_binned;  /* what was left, pieces of clipped ones counted each */
