@@ -111,7 +111,7 @@ void srgb_tables(float linear[256], float edges[256])
 }
 
 /* The number of edges at or below the value. */
-uint32_t srgb_code(const float *edges, float linear)
+uint32_t srgb_code(const float edges[256], float linear)
 {
     uint32_t code = 0;
     for (uint32_t step = 128; step; step /= 2)

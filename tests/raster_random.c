@@ -234,7 +234,7 @@ static amb_image *picture_of(amb_image *image, const amb_texture_slice *slice)
 static bool same(float a, float b) { return a == b || (isnan(a) && isnan(b)); }
 
 /* Counts differing pixels of one attachment; truth: one array a channel, `samples` values a pixel. */
-static long compare_planes(const random_pass *p, const amb_image *image, float *const truth[4], const char *name,
+static long compare_planes(const random_pass *p, const amb_image *image, float *const *truth, const char *name,
                            char what[64])
 {
     long differences = 0;

@@ -1,5 +1,5 @@
-/* <ambiance/half.h> against values computed in double from the bit layouts: every half and every 11- and 10-bit float, and
- * the rounding between neighbours, on every instruction set. */
+/* <ambiance/half.h> against values computed in double from the bit layouts: every half and every 11- and 10-bit float,
+ * and the rounding between neighbours, on every instruction set. */
 #include "tests/texture_probes.h"
 #include "tests/texture_reference.h"
 
