@@ -27,6 +27,11 @@ AMB_INLINE f32x half_to_f(u32x half)
 /* The nearest half; beyond 65504 (from 65520 on) infinity. NaNs keep the top of their payload and become quiet. */
 AMB_INLINE u32x f_to_half(f32x value)
 {
+#if AMB_X86 && AMB_LANES == 16
+    return (u32x)_mm512_cvtepu16_epi32(_mm512_cvtps_ph((__m512)value, _MM_FROUND_TO_NEAREST_INT));
+#elif AMB_X86 && AMB_LANES == 8
+    return (u32x)_mm256_cvtepu16_epi32(_mm256_cvtps_ph((__m256)value, _MM_FROUND_TO_NEAREST_INT));
+#else
     i32x bits = f_bits(value);
     i32x sign = (i32x)(i_as_u(bits) >> 16) & 0x8000, magnitude = bits & 0x7fffffff;
     i32x normal = (magnitude - (112 << 23) + 0x0fff + ((magnitude >> 13) & 1)) >> 13;
@@ -35,6 +40,7 @@ AMB_INLINE u32x f_to_half(f32x value)
     i32x nan = ((magnitude >> 13) & 0x03ff) | 0x7e00;
     i32x half = i_sel(magnitude < 0x38800000, small, i_sel(magnitude < 0x47800000, normal, i_set(0x7c00)));
     return i_as_u(i_sel(magnitude > 0x7f800000, nan, half) | sign);
+#endif
 }
 
 /* The three components of a packed word: red in bits 0-10, green in 11-21, blue in 22-31; 5 exponent bits each. */
