@@ -10,7 +10,7 @@ typedef struct stage_test_uniforms {
     const v4 *clip;      /* of the corners */
     int corners;         /* of a patch, 3 or 4 */
     const float *factor; /* edge 0…3, inside 0…1 of each patch */
-    int emitted;         /* vertices that the amplifying shader emits for primitive 0; one less for each further one */
+    int emitted;         /* vertices that the amplifying shader emits for primitive n: emitted - n mod 7 */
     v4 size;             /* of billboards: half of it, in clip x and y */
 } stage_test_uniforms;
 
@@ -27,8 +27,8 @@ typedef struct stage_test_shaders {
     amb_geometry_shader amplify;   /* of points: strips zigzagging to the right */
     amb_geometry_shader cuts;      /* of points: strips of 1, 2, 3, 4, 5, 1, … vertices, 16 vertices in all */
     amb_fragment_shader covered;   /* target 0: 1 or, of back faces, -1; 1 */
-    amb_fragment_shader shade;     /* target 0: the varying, with alpha ½ */
-    amb_fragment_shader varying;   /* target 0: the varying as it is */
+    amb_fragment_shader shade;     /* target 0: the varying's x, y, z, alpha ½ */
+    amb_fragment_shader number;    /* target 0: varying x, y, the primitive's number, varying z */
 } stage_test_shaders;
 
 const stage_test_shaders *stage_test_shaders_of(amb_isa isa);

@@ -91,13 +91,14 @@ static void amplify(const amb_gs_in *in, amb_gs_out *out)
     const stage_test_uniforms *u = in->uniforms;
     v4x *varying = out->varyings;
     const v4x *from = in->varyings[0];
+    i32x most = u->emitted - (in->primitive - f_to_i(i_to_f(in->primitive) * (1.0f / 7.0f) + 0.01f) * 7);
     for (int i = 0; i < u->emitted; i++) {
         out->clip = in->clip[0];
         out->clip.x += u->size.x * (float)i;
         out->clip.y += i & 1 ? u->size.y : 0.0f;
         *varying = *from;
         varying->y = f_set((float)i);
-        amb_emit(out, in->live & (i < u->emitted - in->primitive));
+        amb_emit(out, in->live & (i < most));
     }
 }
 
@@ -130,18 +131,18 @@ static void covered(const amb_fs_in *in, amb_fs_out *out)
 static void shade(const amb_fs_in *in, amb_fs_out *out)
 {
     const v4x *v = in->varyings;
-    out->color[0] = v4x_of(v->x, v->y, i_to_f(in->primitive), f_set(0.5f));
+    out->color[0] = v4x_of(v->x, v->y, v->z, f_set(0.5f));
 }
 
-static void varying(const amb_fs_in *in, amb_fs_out *out)
+static void number(const amb_fs_in *in, amb_fs_out *out)
 {
     const v4x *v = in->varyings;
-    out->color[0] = *v;
+    out->color[0] = v4x_of(v->x, v->y, i_to_f(in->primitive), v->z);
 }
 
 const stage_test_shaders *stage_test_shaders_get(void)
 {
-    static const stage_test_shaders shaders = {AMB_LANES, vertex,  hull, quad,    triangle, same,   cull,
-                                               billboard, amplify, cuts, covered, shade,    varying};
+    static const stage_test_shaders shaders = {AMB_LANES, vertex,  hull, quad,    triangle, same,  cull,
+                                               billboard, amplify, cuts, covered, shade,    number};
     return &shaders;
 }
