@@ -37,16 +37,19 @@ void amb_terrain_place(amb_terrain *terrain, const amb_noise_texture *noise, uin
     float frequency = 1.0f;
     double c = 1.0, s = 0.0;
     for (int i = 0; i < TERRAIN_OCTAVES; i++) {
-        uint32_t start = seed == 0 ? 0u : amb_hash(seed + (uint32_t)i);
+        uint32_t start = seed == 0 ? 0u : amb_hash(seed + (uint32_t)i); /* two of its bytes */
         terrain->octave[i] = (amb_terrain_octave){
             .frequency = frequency,
+            .along = (float)c * frequency,
+            .across = (float)s * frequency,
             .c = (float)c,
             .s = (float)s,
             .cc = (float)(c * c),
             .ss = (float)(s * s),
             .cs = (float)(c * s),
             .offset = {(float)((double)at_x.part / (double)power), (float)((double)at_y.part / (double)power)},
-            .lattice = {.seed = start, .x = (int32_t)(uint32_t)at_x.cell, .y = (int32_t)(uint32_t)at_y.cell}};
+            .x = (uint32_t)at_x.cell + (start & 255u),
+            .y = (uint32_t)at_y.cell + (start >> 24)};
         frequency *= 2.0f;
         if (!turned) {
             at_x.cell *= 2, at_y.cell *= 2;

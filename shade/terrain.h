@@ -6,6 +6,8 @@
  * f is noise_texture2. hᵢ, the slope of the plain fBm so far, flattens the finer octaves where the ground is steep:
  * smooth faces, rough crests and valleys, as erosion leaves them.
  *
+ * f is twice continuously differentiable and Z, which holds its slope, once: at the cells' borders normals bend.
+ *
  * p is in cells of octave 0, relative to a whole cell that amb_terrain_place chooses: near the eye, so that |p| is
  * small and a flight of any length loses no precision. The plane's second axis is called y here; a scene with y up uses
  * its z. Lanes functions; pure; any thread. */
@@ -17,12 +19,13 @@
 
 #define TERRAIN_OCTAVES 16
 
-/* The argument of octave i: 2ⁱ R p + offset, in cells of its own after `lattice`. R turns by (c, s). */
+/* The argument of octave i: 2ⁱ R p + offset, in cells of its own after (x, y). R turns by the angle of cosine c and
+ * sine s. */
 typedef struct amb_terrain_octave {
-    float frequency, c, s; /* 2ⁱ; cosine and sine of its turn */
-    float cc, ss, cs;      /* c², s², c·s */
-    v2 offset;             /* the part of the octave's origin below one cell, in [0, 1) */
-    amb_lattice lattice;   /* its whole cells, and where in the texture the octave starts */
+    float frequency, along, across; /* 2ⁱ, 2ⁱc, 2ⁱs */
+    float c, s, cc, ss, cs;         /* c, s, c², s², c·s */
+    v2 offset;                      /* the part of the octave's origin below one cell, in [0, 1) */
+    uint32_t x, y;                  /* its whole cells, and where in the texture the octave starts; modulo 2³² */
 } amb_terrain_octave;
 
 typedef struct amb_terrain {
@@ -51,13 +54,12 @@ AMB_INLINE v2x terrain_place_(v2x p)
     return (v2x){f_clamp(p.x, -far, far), f_clamp(p.y, -far, far)};
 }
 
-/* f(2ⁱp) in the octave's own, turned axes. */
-AMB_INLINE noise2x terrain_octave_(const amb_terrain *t, int i, v2x p)
+/* Where 2ⁱp is, in the octave's own, turned axes. */
+AMB_INLINE noise_texture_cell_ terrain_octave_(const amb_terrain *t, int i, v2x p)
 {
     const amb_terrain_octave *o = &t->octave[i];
-    v2x at = {(p.x * o->c - p.y * o->s) * o->frequency + o->offset.x,
-              (p.x * o->s + p.y * o->c) * o->frequency + o->offset.y};
-    return noise_texture2(t->noise, at, o->lattice);
+    v2x at = {(p.x * o->along - p.y * o->across) + o->offset.x, (p.x * o->across + p.y * o->along) + o->offset.y};
+    return noise_texture_cell_of_(t->noise, at, o->x, o->y);
 }
 
 /* Z and its slope by quotient and chain rule. octaves: 0…16 of each lane, a real number: the last one fades in, so that
@@ -72,10 +74,15 @@ AMB_INLINE terrain_surface terrain_at(const amb_terrain *t, v2x p, f32x octaves)
     terrain_surface z = {zero, {zero, zero}};
     f32x hx = zero, hy = zero, jxx = zero, jxy = zero, jyy = zero;
     float amplitude = 1.0f;
-    for (int i = 0; i < TERRAIN_OCTAVES && m_any(octaves > (float)i); i++, amplitude *= 0.5f) {
+    noise_texture_cell_ next = terrain_octave_(t, 0, p);
+    bool more = m_any(octaves > 0.0f);
+    for (int i = 0; more; i++, amplitude *= 0.5f) {
         const amb_terrain_octave *o = &t->octave[i];
         f32x weight = f_saturate(octaves - (float)i);
-        noise2x f = terrain_octave_(t, i, p);
+        noise2x f = noise_texture_surface_(&next);
+        more = i + 1 < TERRAIN_OCTAVES && m_any(octaves > (float)(i + 1));
+        if (more) /* looked up early: the next octave's way to its texel is long */
+            next = terrain_octave_(t, i + 1, p);
         f32x fx = f.slope.x * o->c + f.slope.y * o->s, fy = f.slope.y * o->c - f.slope.x * o->s;
         f32x curve = weight * o->frequency, twist = (f.xy + f.xy) * o->cs;
         hx += weight * fx;
@@ -117,8 +124,10 @@ AMB_INLINE f32x terrain_fbm(const amb_terrain *t, v2x p, f32x octaves)
     p = terrain_place_(p);
     f32x sum = f_set(0.0f);
     float amplitude = 1.0f;
-    for (int i = 0; i < TERRAIN_OCTAVES && m_any(octaves > (float)i); i++, amplitude *= 0.5f)
-        sum += f_saturate(octaves - (float)i) * amplitude * terrain_octave_(t, i, p).value;
+    for (int i = 0; i < TERRAIN_OCTAVES && m_any(octaves > (float)i); i++, amplitude *= 0.5f) {
+        noise_texture_cell_ cell = terrain_octave_(t, i, p);
+        sum += f_saturate(octaves - (float)i) * amplitude * noise_texture_surface_(&cell).value;
+    }
     return sum;
 }
 

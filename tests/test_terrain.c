@@ -33,45 +33,42 @@ static double texel(const amb_noise_texture *noise, int64_t x, int64_t y)
 }
 static double fade(double t) { return t * t * t * (t * (6.0 * t - 15.0) + 10.0); }
 
-static double noise_at(const amb_noise_texture *noise, double px, double py, int64_t cell_x, int64_t cell_y)
+static double fade_slope(double t) { return 30 * t * t * (t - 1) * (t - 1); }
+
+/* A value and its slope. */
+typedef struct slope2 {
+    double f, x, y;
+} slope2;
+
+static slope2 noise_of(const amb_noise_texture *noise, double px, double py, int64_t cell_x, int64_t cell_y)
 {
     double fx = floor(px), fy = floor(py), u = fade(px - fx), v = fade(py - fy);
     int64_t x = (int64_t)fx + cell_x, y = (int64_t)fy + cell_y;
-    return (1 - u) * (1 - v) * texel(noise, x, y) + u * (1 - v) * texel(noise, x + 1, y) +
-           (1 - u) * v * texel(noise, x, y + 1) + u * v * texel(noise, x + 1, y + 1);
+    double a = texel(noise, x, y), b = texel(noise, x + 1, y), c = texel(noise, x, y + 1);
+    double d = texel(noise, x + 1, y + 1);
+    return (slope2){(1 - u) * (1 - v) * a + u * (1 - v) * b + (1 - u) * v * c + u * v * d,
+                    fade_slope(px - fx) * ((1 - v) * (b - a) + v * (d - c)),
+                    fade_slope(py - fy) * ((1 - u) * (c - a) + u * (d - b))};
+}
+static double noise_at(const amb_noise_texture *noise, double px, double py, int64_t cell_x, int64_t cell_y)
+{
+    return noise_of(noise, px, py, cell_x, cell_y).f;
 }
 
-/* f of octave i at p, and its slope in p's axes without the factor 2ⁱ: ∇f(2ⁱp), by central differences of order 4. */
-typedef struct octave_value {
-    double f, x, y;
-} octave_value;
-
-static double octave_at(const amb_terrain *t, int i, double px, double py)
+/* f of octave i at p, and ∇f(2ⁱp) in p's axes. */
+static slope2 octave_of(const amb_terrain *t, int i, double px, double py)
 {
     const amb_terrain_octave *o = &t->octave[i];
     double angle = o->s == 0.0f ? 0.0 : i * atan2(3.0, 4.0), c = cos(angle), s = sin(angle), scale = ldexp(1.0, i);
-    uint32_t shift = amb_hash(o->lattice.seed);
-    return noise_at(t->noise, (px * c - py * s) * scale + (double)o->offset.x,
-                    (px * s + py * c) * scale + (double)o->offset.y, o->lattice.x + (int64_t)(shift & 0xffffu),
-                    o->lattice.y + (int64_t)(shift >> 16));
-}
-static octave_value octave_of(const amb_terrain *t, int i, double px, double py)
-{
-    double h = ldexp(1e-3, -i);
-    octave_value v = {octave_at(t, i, px, py), 0, 0};
-    v.x = (8 * (octave_at(t, i, px + h, py) - octave_at(t, i, px - h, py)) -
-           (octave_at(t, i, px + 2 * h, py) - octave_at(t, i, px - 2 * h, py))) /
-          (12e-3);
-    v.y = (8 * (octave_at(t, i, px, py + h) - octave_at(t, i, px, py - h)) -
-           (octave_at(t, i, px, py + 2 * h) - octave_at(t, i, px, py - 2 * h))) /
-          (12e-3);
-    return v;
+    slope2 own = noise_of(t->noise, (px * c - py * s) * scale + (double)o->offset.x,
+                          (px * s + py * c) * scale + (double)o->offset.y, o->x, o->y);
+    return (slope2){own.f, own.x * c + own.y * s, own.y * c - own.x * s};
 }
 static double height_at(const amb_terrain *t, double px, double py, int octaves)
 {
     double z = 0, hx = 0, hy = 0;
     for (int i = 0; i < octaves; i++) {
-        octave_value v = octave_of(t, i, px, py);
+        slope2 v = octave_of(t, i, px, py);
         hx += v.x;
         hy += v.y;
         z += ldexp(v.f, -i) / (1 + (double)t->erosion * (hx * hx + hy * hy));
@@ -179,9 +176,25 @@ static void heights_match_the_formula(void **state)
              6e-6);
         double fbm = 0;
         for (int k = 0; k < octaves; k++)
-            fbm += ldexp(octave_at(t, k, (double)x, (double)y), -k);
+            fbm += ldexp(octave_of(t, k, (double)x, (double)y).f, -k);
         near((double)terrain_fbm(t, (v2x){x, y}, (float)octaves), fbm, 4e-6);
     }
+}
+
+/* Whether p and all within `reach` of it lie in one cell of each octave. Across a cell's border f‴ jumps, so ∇f, h and
+ * with them Z have a bend: there, differences converge with the step and not with its square. */
+static bool inside_cells(const amb_terrain *t, double px, double py, int octaves, double reach)
+{
+    for (int i = 0; i < octaves; i++) {
+        const amb_terrain_octave *o = &t->octave[i];
+        double x = px * (double)o->along - py * (double)o->across + (double)o->offset.x;
+        double y = px * (double)o->across + py * (double)o->along + (double)o->offset.y;
+        double margin = reach * ldexp(1.0, i);
+        x -= floor(x), y -= floor(y);
+        if (fmin(x, y) < margin || fmax(x, y) > 1 - margin)
+            return false;
+    }
+    return true;
 }
 
 /* Central differences of the double height must approach the analytic slope with h²: halving h quarters the error. */
@@ -190,27 +203,31 @@ static void slopes_converge_with_the_square(void **state)
     (void)state;
     const lanes_terrain_set *set = lanes_terrain_data();
     uint64_t seed = 3;
-    const int octaves = 5;
-    double error[4] = {0}, steepest = 0;
-    for (int i = 0; i < 300; i++) {
+    const int octaves = 3;
+    double error[3] = {0}, steepest = 0;
+    int count = 0;
+    for (int i = 0; i < 3000; i++) {
         const amb_terrain *t = i & 1 ? &set->turned : &set->plain;
         float x = random_in(&seed, -1, 1), y = random_in(&seed, -1, 1);
+        double px = (double)x, py = (double)y, h = 1.0 / 256;
+        if (!inside_cells(t, px, py, octaves, h))
+            continue;
+        count++;
         terrain_surface z = terrain_at(t, (v2x){x, y}, (float)octaves);
-        double px = (double)x, py = (double)y, h = 1.0 / 2048;
-        for (int k = 0; k < 4; k++, h /= 2) {
+        for (int k = 0; k < 3; k++, h /= 2) {
             double sx = (height_at(t, px + h, py, octaves) - height_at(t, px - h, py, octaves)) / (2 * h);
             double sy = (height_at(t, px, py + h, octaves) - height_at(t, px, py - h, octaves)) / (2 * h);
             error[k] += pow(sx - (double)z.slope.x, 2) + pow(sy - (double)z.slope.y, 2);
             steepest = fmax(steepest, fabs(sx));
         }
     }
-    assert_true(steepest > 0.5);
-    for (int k = 0; k < 3; k++) {
+    assert_true(steepest > 0.5 && count > 1000);
+    for (int k = 0; k < 2; k++) {
         double ratio = sqrt(error[k] / error[k + 1]);
-        if (ratio < 3.5 || ratio > 4.5)
+        if (ratio < 3.7 || ratio > 4.3)
             fail_msg("halving the step divides the error by %g", ratio);
     }
-    assert_true(sqrt(error[3] / 600) < 1e-4);
+    assert_true(sqrt(error[2] / (2 * count)) < 5e-4);
 }
 
 /* The option in floats: the same height, and a slope whose error falls with the square of the step until rounding. */
@@ -221,20 +238,25 @@ static void central_differences_agree(void **state)
     double error[3] = {0};
     for (int k = 0; k < 3; k++) {
         uint64_t seed = 4;
-        for (int i = 0; i < 500; i++) {
+        int count = 0;
+        for (int i = 0; i < 1500; i++) {
             v2x p = {random_in(&seed, -1, 1), random_in(&seed, -1, 1)};
+            if (!inside_cells(t, (double)p.x, (double)p.y, 4, 1.0 / 128))
+                continue;
+            count++;
             terrain_surface analytic = terrain_at(t, p, 4.0f);
             terrain_surface central = terrain_at_central(t, p, 4.0f, ldexpf(1.0f, -7 - k));
             assert_true(memcmp(&analytic.height, &central.height, sizeof central.height) == 0);
             error[k] += pow((double)(central.slope.x - analytic.slope.x), 2) +
                         pow((double)(central.slope.y - analytic.slope.y), 2);
         }
-        error[k] = sqrt(error[k] / 1000);
+        assert_true(count > 300);
+        error[k] = sqrt(error[k] / (2 * count));
     }
     for (int k = 0; k < 2; k++)
-        if (error[k] / error[k + 1] < 3.3 || error[k] / error[k + 1] > 4.7)
+        if (error[k] / error[k + 1] < 3.5 || error[k] / error[k + 1] > 4.5)
             fail_msg("halving the step divides the error by %g", error[k] / error[k + 1]);
-    assert_true(error[2] < 5e-3);
+    assert_true(error[2] < 2e-2);
 }
 
 static void octaves_fade_in(void **state)
@@ -305,12 +327,12 @@ static void origins_are_exact(void **state)
         __int128 x = places[n][0], y = places[n][1], power = 1;
         for (int i = 0; i < TERRAIN_OCTAVES; i++) {
             const __int128 at[2] = {x, y};
-            const int32_t cell[2] = {t.octave[i].lattice.x, t.octave[i].lattice.y};
+            const uint32_t cell[2] = {t.octave[i].x, t.octave[i].y};
             const float part[2] = {t.octave[i].offset.x, t.octave[i].offset.y};
             for (int k = 0; k < 2; k++) {
                 __int128 rest = at[k] % power;
                 rest += rest < 0 ? power : 0;
-                assert_int_equal((uint32_t)cell[k], (uint32_t)((at[k] - rest) / power));
+                assert_int_equal(cell[k], (uint32_t)((at[k] - rest) / power));
                 near((double)part[k], (double)rest / (double)power, 3e-8);
             }
             __int128 next_x = 2 * (4 * x - 3 * y), next_y = 2 * (3 * x + 4 * y);

@@ -31,22 +31,43 @@ AMB_INLINE u32x noise_texture_fetch_(const amb_noise_texture *texture, i32x inde
     return u_gather(texture->corners, index);
 }
 
+/* A point's place in its cell, and the cell's corners. */
+typedef struct noise_texture_cell_ {
+    noise_axis_ x, y;
+    u32x corners;
+} noise_texture_cell_;
+
+/* x, y: whole cells to add. */
+AMB_INLINE noise_texture_cell_ noise_texture_cell_of_(const amb_noise_texture *texture, v2x p, uint32_t x, uint32_t y)
+{
+    noise_texture_cell_ cell;
+    cell.x = noise_axis_of_(p.x, (int32_t)x);
+    cell.y = noise_axis_of_(p.y, (int32_t)y);
+    u32x mask = u_set(AMB_NOISE_TEXTURE - 1u);
+    u32x index = (cell.x.cell & mask) | (cell.y.cell & mask) << 8;
+    cell.corners = noise_texture_fetch_(texture, u_as_i(index));
+    return cell;
+}
+
+AMB_INLINE noise2x noise_texture_surface_(const noise_texture_cell_ *cell)
+{
+    u32x bits = cell->corners;
+    f32x a = i_to_f(u_as_i(bits << 24) >> 24), b = i_to_f(u_as_i(bits << 16) >> 24);
+    f32x c = i_to_f(u_as_i(bits << 8) >> 24), d = i_to_f(u_as_i(bits) >> 24);
+    const float scale = 1.0f / 128.0f; /* exact: a power of two */
+    noise2x n = noise_surface_(a * scale, b * scale, c * scale, d * scale, &cell->x, &cell->y);
+    n.value += 1.0f / 256.0f;
+    return n;
+}
+
 /* In (-1, 1). All derivatives, second ones too. The lattice's seed moves the origin in the texture (0: not at all); its
  * x and y are whole cells, as in noise.h. */
 AMB_INLINE noise2x noise_texture2(const amb_noise_texture *texture, v2x p, amb_lattice lattice)
 {
-    uint32_t shift = amb_hash(lattice.seed);
-    noise_axis_ x = noise_axis_of_(p.x, (int32_t)((uint32_t)lattice.x + (shift & 0xffffu)));
-    noise_axis_ y = noise_axis_of_(p.y, (int32_t)((uint32_t)lattice.y + (shift >> 16)));
-    u32x mask = u_set(AMB_NOISE_TEXTURE - 1u);
-    i32x word = u_as_i(noise_texture_fetch_(texture, u_as_i((x.cell & mask) | (y.cell & mask) * AMB_NOISE_TEXTURE)));
-    u32x bits = i_as_u(word);
-    f32x a = i_to_f(u_as_i(bits << 24) >> 24), b = i_to_f(u_as_i(bits << 16) >> 24);
-    f32x c = i_to_f(u_as_i(bits << 8) >> 24), d = i_to_f(word >> 24);
-    const float scale = 1.0f / 128.0f; /* exact: a power of two */
-    noise2x n = noise_surface_(a * scale, b * scale, c * scale, d * scale, &x, &y);
-    n.value += 1.0f / 256.0f;
-    return n;
+    uint32_t shift = amb_hash(lattice.seed), x = (uint32_t)lattice.x + (shift & 255u),
+             y = (uint32_t)lattice.y + (shift >> 24);
+    noise_texture_cell_ cell = noise_texture_cell_of_(texture, p, x, y);
+    return noise_texture_surface_(&cell);
 }
 
 #endif
