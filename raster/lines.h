@@ -73,18 +73,18 @@ static void play_line_block(const raster_tile *tile, raster_shading *s, raster_q
     if (llabs(dx * middle_y - dy * middle_x) > (llabs(dx) * AMB_BLOCK_H + llabs(dy) * AMB_BLOCK_W) * 128)
         return; /* too far from the block */
     uint32_t cover = 0;
-    float along[AMB_LANES];
+    float to_first[AMB_LANES], to_last[AMB_LANES]; /* both exact before division: 1 - t would cancel */
     float length = (float)(line->steep ? dy : dx);
     for (int lane = 0; lane < AMB_LANES; lane++) {
         int64_t x = cx + (int64_t)i_lane(i_block_x(), lane) * RASTER_SUBPIXEL;
         int64_t y = cy + (int64_t)i_lane(i_block_y(), lane) * RASTER_SUBPIXEL;
         cover |= (uint32_t)line_covers(line, x, y) << lane;
-        along[lane] = (float)(line->steep ? y - line->y0 : x - line->x0) / length;
+        to_first[lane] = (float)(line->steep ? y - line->y0 : x - line->x0) / length;
+        to_last[lane] = (float)(line->steep ? line->y1 - y : line->x1 - x) / length;
     }
     if (cover == 0)
         return;
-    f32x t = f_saturate(f_load(along));
-    const f32x weight[3] = {1.0f - t, t, f_set(0.0f)};
+    const f32x weight[3] = {f_saturate(f_load(to_last)), f_saturate(f_load(to_first)), f_set(0.0f)};
     fragment_triangle(tile, s, queue, bx, by, m_from_bits(cover), weight);
 }
 
