@@ -18,7 +18,8 @@
     X(neptune)    \
     X(pluto)      \
     X(julia)      \
-    X(lucy)
+    X(lucy)       \
+    X(hillscape)
 /* clang-format on */
 
 #if defined(__x86_64__)

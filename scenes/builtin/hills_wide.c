@@ -59,20 +59,22 @@ v4x WIDE(amb_hills)(v2x uv)
         fbm2(noise_gradient2, v2x_scale(p, f_set(3.1f)), (amb_lattice){.seed = 72}, (amb_fbm){6, 2.0f, 0.5f}).value;
     f32x land = 1.0f - f_smoothstep(f_set(0.42f), f_set(0.98f), away + coast * 0.22f);
 
-    f32x hills = eroded((v2x){q.x * 4.2f + 11.3f, q.y * 4.2f - 3.7f}, 73, 9, 0.47f);
-    f32x crest = ridges((v2x){q.x * 2.6f + 5.1f, q.y * 2.6f + 8.4f}, 83, 9);
+    f32x hills = eroded((v2x){q.x * 4.2f + 11.3f, q.y * 4.2f - 3.7f}, 73, 10, 0.50f);
+    f32x crest = ridges((v2x){q.x * 2.6f + 5.1f, q.y * 2.6f + 8.4f}, 83, 10);
+    f32x gullies = ridges((v2x){q.x * 9.0f - 2.7f, q.y * 9.0f + 1.9f}, 95, 7);
     f32x mountain = f_saturate(bump(q, -0.30f, -0.42f, 0.30f) + 0.85f * bump(q, 0.42f, -0.30f, 0.26f) +
                                0.45f * bump(q, 0.05f, 0.62f, 0.20f));
-    f32x height =
-        land * (0.30f + 0.20f * hills + mountain * (0.10f + 0.62f * crest)) - 0.16f * (1.0f - land) + 0.06f * land;
+    f32x raised = 0.17f + 0.17f * hills + 0.075f * gullies + mountain * (0.02f + 0.70f * crest + 0.10f * gullies);
+    f32x height = land * raised - 0.16f * (1.0f - land);
 
-    /* A fjord from the south into the island's middle. */
+    /* A fjord from the south into the island's middle; its shores rise slowly at first. */
     f32x middle = 0.10f * f_sin(q.y * 5.0f + 0.6f) + 0.04f * coast;
     f32x across = f_abs(q.x - middle - 0.02f) * (1.0f / 0.16f);
     f32x open = f_smoothstep(f_set(-0.45f), f_set(-0.05f), q.y);
-    f32x fjord = open * (1.0f - f_smoothstep(f_set(0.25f), f_set(1.25f), across + coast * 0.5f));
-    height = f_lerp(height, f_set(0.03f) + 0.05f * hills, fjord);
-    height = height + 0.12f; /* sea level to 0.25 below */
+    f32x bank = f_saturate((across + coast * 0.55f + hills * 0.35f - 0.20f) * (1.0f / 2.2f));
+    f32x fjord = open * (1.0f - bank * (0.45f + 0.55f * bank));
+    height = f_lerp(height, f_set(-0.11f) + 0.06f * hills, fjord);
+    height = height + 0.25f; /* the sea's level */
 
     /* Beaches: just above the water the land is flat, more so where the coast noise says sand. */
     f32x above = height - 0.25f, flat = f_set(0.004f) + 0.03f * f_saturate(0.5f + coast * 1.2f);
