@@ -146,6 +146,12 @@ v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv
 {
     return amb_sample_2d_grad(texture, sampler, uv, v2x_of(f_ddx(uv.x), f_ddx(uv.y)), v2x_of(f_ddy(uv.x), f_ddy(uv.y)));
 }
+
+v4x amb_sample_2d_array(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer)
+{
+    return amb_sample_2d_array_grad(texture, sampler, uv, layer, v2x_of(f_ddx(uv.x), f_ddx(uv.y)),
+                                    v2x_of(f_ddy(uv.x), f_ddy(uv.y)));
+}
 #endif
 
 /* ---- 3D --------------------------------------------------------------------------------------------------------- */

@@ -257,6 +257,30 @@ static void arrays_match_double_precision(void **unused)
             }
 }
 
+/* The plain form takes from each quad the differences that a GPU takes; layers may differ within it. */
+static void quads_give_the_gradients(void **unused)
+{
+    (void)unused;
+    static maps m;
+    static probe in[BATCH];
+    static float given[BATCH][4], taken[BATCH][4];
+    const amb_sampler s = {.filter = AMB_TRILINEAR, .max_anisotropy = 4};
+    open_maps(&m, AMB_TEXTURE_2D_ARRAY, AMB_TEXEL_RGBA16F, 16, 16, 1);
+    random_probes(in, false, 0.0);
+    for (int i = 0; i < BATCH; i++)
+        for (int a = 0; a < 2; a++) {
+            const probe *q = &in[i & ~3];
+            in[i].dx[a] = q[(i & 2) + 1].at[a] - q[i & 2].at[a];
+            in[i].dy[a] = q[(i & 1) + 2].at[a] - q[i & 1].at[a];
+        }
+    probe_texture(1, m.texture, &s, PROBE_ARRAY_GRAD, in, BATCH, given);
+    for (const int *lanes = probe_lanes() + 1; *lanes; lanes++) {
+        probe_texture(*lanes, m.texture, &s, PROBE_ARRAY_QUAD, in, BATCH, taken);
+        assert_memory_equal(taken, given, sizeof taken);
+    }
+    close_maps(&m);
+}
+
 /* NaN on either side fails all but NOT_EQUAL and ALWAYS; hostile coordinates sample something. */
 static void hostile_comparisons(void **unused)
 {
@@ -290,6 +314,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(comparisons_match_double_precision),
         cmocka_unit_test(arrays_match_double_precision),
+        cmocka_unit_test(quads_give_the_gradients),
         cmocka_unit_test(hostile_comparisons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

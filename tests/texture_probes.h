@@ -14,6 +14,7 @@ typedef enum probe_mode {
     PROBE_CUBE_QUAD,
     PROBE_ARRAY_LOD,
     PROBE_ARRAY_GRAD,
+    PROBE_ARRAY_QUAD,
     PROBE_COMPARE_2D, /* results in the first component */
     PROBE_COMPARE_ARRAY,
     PROBE_COMPARE_CUBE

@@ -46,8 +46,11 @@ static v4x sample(const amb_texture *t, const amb_sampler *s, probe_mode mode, v
         return amb_sample_2d(t, s, uv);
     case PROBE_CUBE_QUAD:
         return amb_sample_cube(t, s, at);
+    case PROBE_ARRAY_QUAD:
+        return amb_sample_2d_array(t, s, uv, layer);
 #else
     case PROBE_2D_QUAD:
+    case PROBE_ARRAY_QUAD:
     case PROBE_CUBE_QUAD:
         break;
 #endif

@@ -118,6 +118,10 @@ v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, 
 v4x amb_sample_3d_lod(const amb_texture *texture, const amb_sampler *sampler, v3x uvw, f32x lod);
 
 /* Arrays: the layer is clamped to 0…depth-1. The plain 2D forms sample layer 0 of an array. */
+#if AMB_LANES > 1
+#define amb_sample_2d_array WIDE(amb_sample_2d_array)
+v4x amb_sample_2d_array(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer);
+#endif
 #define amb_sample_2d_array_grad WIDE(amb_sample_2d_array_grad)
 v4x amb_sample_2d_array_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, v2x ddx,
                              v2x ddy);
