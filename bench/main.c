@@ -32,8 +32,8 @@ typedef struct report {
 typedef struct settings {
     bench_options options;
     int rounds;
-    bool json;
-    amb_isa only; /* AUTO: every one there is */
+    bool json, alone; /* alone: without the peer */
+    amb_isa only;     /* AUTO: every one there is */
     int filters;
     char **filter;
 } settings;
@@ -331,10 +331,9 @@ static void print_json(const settings *set, const report *reports, int count)
 
 static void usage(FILE *to)
 {
-    fprintf(
-        to,
-        "usage: ambiance-bench [--quick] [--json] [--rounds N] [--size WxH] [--threads N] [--isa NAME] [workload ...]"
-        "\n\nworkloads:\n");
+    fprintf(to, "usage: ambiance-bench [--quick] [--json] [--rounds N] [--size WxH] [--threads N] [--isa NAME] "
+                "[--ours] [workload ...]"
+                "\n\nworkloads:\n");
     for (int i = 0; bench_workloads[i]; i++)
         fprintf(to, "  %-10s %s\n", bench_workloads[i]->name, bench_workloads[i]->about);
 }
@@ -350,10 +349,15 @@ static bool chosen(const settings *set, const bench_workload *w)
 /* 0, or the exit code plus 1. */
 static int read_options(int argc, char **argv, settings *set)
 {
-    static const struct option names[] = {{"quick", no_argument, 0, 'q'},         {"json", no_argument, 0, 'j'},
-                                          {"rounds", required_argument, 0, 'r'},  {"size", required_argument, 0, 's'},
-                                          {"threads", required_argument, 0, 't'}, {"help", no_argument, 0, 'h'},
-                                          {"isa", required_argument, 0, 'i'},     {0, 0, 0, 0}};
+    static const struct option names[] = {{"quick", no_argument, 0, 'q'},
+                                          {"json", no_argument, 0, 'j'},
+                                          {"rounds", required_argument, 0, 'r'},
+                                          {"size", required_argument, 0, 's'},
+                                          {"threads", required_argument, 0, 't'},
+                                          {"help", no_argument, 0, 'h'},
+                                          {"isa", required_argument, 0, 'i'},
+                                          {"ours", no_argument, 0, 'o'},
+                                          {0, 0, 0, 0}};
     int rounds = 0, width = 0, height = 0;
     char rest;
     for (int c; (c = getopt_long(argc, argv, "h", names, NULL)) != -1;) {
@@ -378,6 +382,9 @@ static int read_options(int argc, char **argv, settings *set)
             break;
         case 'i':
             good = amb_isa_parse(optarg, &set->only, NULL) == AMB_OK;
+            break;
+        case 'o':
+            set->alone = true;
             break;
         case 'h':
             usage(stdout);
@@ -425,8 +432,8 @@ int main(int argc, char **argv)
         return stop - 1;
 
     amb_error error = {0};
-    bool missing = gl_open(set.options.threads, &set.options.peer, &error) != AMB_OK;
-    if (missing)
+    bool missing = set.alone || gl_open(set.options.threads, &set.options.peer, &error) != AMB_OK;
+    if (missing && !set.alone)
         fprintf(stderr, "ambiance-bench: %s; measuring without it\n", error.detail);
     if (!set.json)
         printf("ambiance %s, %dx%d, %d threads, median of %d\npeer: %s\n", amb_version(), set.options.width,
