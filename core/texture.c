@@ -79,6 +79,14 @@ static amb_status check_desc(const amb_texture_desc *d, amb_texture_info *info, 
 
 /* ---- layout ----------------------------------------------------------------------------------------------------- */
 
+/* Texels from a row to the next, of rows of at least `texels`: an odd number of cache lines. Rows then begin lines, and
+ * lines above one another fall into different sets of the caches, where a power of two would have them share a few. */
+static size_t row_pitch(size_t texels, size_t words)
+{
+    const size_t line = TEXTURE_LINE_WORDS / words;
+    return ((texels + line - 1) / line | 1) * line;
+}
+
 /* Places every level; LIMIT when lanes could not index the words with 32 bits. */
 static amb_status lay_out(amb_texture *t, amb_error *error)
 {
@@ -87,13 +95,13 @@ static amb_status lay_out(amb_texture *t, amb_error *error)
     for (int l = 0; l < t->info.levels; l++) {
         size_t width = (size_t)level_size(t->info.width, l), height = (size_t)level_size(t->info.height, l);
         size_t slices = (size_t)level_slices(&t->info, l) + (t->info.kind == AMB_TEXTURE_3D);
-        size_t pad = cube ? 2 : 1, slice = (width + pad) * (height + pad);
+        size_t pad = cube ? 2 : 1, pitch = row_pitch(width + pad, words), slice = pitch * (height + pad);
         if ((texels + slice * slices) * words >= INT32_MAX)
             return amb_fail(error, AMB_ERROR_LIMIT,
                             "texture: %d x %d x %d texels take more than 8 GiB; use a smaller size or format",
                             t->info.width, t->info.height, level_slices(&t->info, 0));
         t->base[l] = (int32_t)texels;
-        t->pitch[l] = (int32_t)(width + pad);
+        t->pitch[l] = (int32_t)pitch;
         t->slice[l] = (int32_t)slice;
         t->width[l] = (float)width;
         t->height[l] = (float)height;

@@ -6,23 +6,39 @@
 
 /* ---- wrapping --------------------------------------------------------------------------------------------------- */
 
-/* The texel to the left of coordinate u (finite), from -1 to size-1, and the fraction to the next one. */
-AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
+/* A coordinate as every level may use it. */
+typedef struct {
+    f32x u;       /* finite, wrapped where that can be done here */
+    bool clamped; /* texels are clamped to the level's */
+} wrapped;
+
+AMB_INLINE wrapped wrap_coordinate(f32x u, amb_wrap wrap)
 {
-    f32x t;
-    if (wrap == AMB_REPEAT) {
-        t = (u - f_floor(u)) * size - 0.5f;
-    } else {
-        if (wrap == AMB_MIRROR) {
-            f32x pair = u * 0.5f;
-            u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
-        }
-        t = f_clamp(u * size - 0.5f, f_set(0.0f), size - 1.0f);
+    if (wrap == AMB_REPEAT)
+        return (wrapped){u - f_floor(u), false};
+    if (wrap == AMB_MIRROR) {
+        f32x pair = u * 0.5f;
+        u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
     }
+    return (wrapped){u, true};
+}
+
+/* The texel to the left, from 0 to size-1, and the fraction to the next one. */
+AMB_INLINE f32x texel_left_of(const wrapped *w, f32x size, i32x *texel)
+{
+    f32x t = w->u * size - 0.5f;
+    if (w->clamped)
+        t = f_clamp(t, f_set(0.0f), size - 1.0f);
     f32x left = f_floor(t);
     i32x i = small_to_i(left);
     *texel = i + ((i >> 31) & small_to_i(size)); /* left of the first comes the last */
     return t - left;
+}
+
+AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
+{
+    wrapped w = wrap_coordinate(u, wrap);
+    return texel_left_of(&w, size, texel);
 }
 
 /* The texel that contains coordinate u. */

@@ -21,37 +21,34 @@ typedef struct {
     int most_taps;
 } request_cube;
 
-AMB_INLINE void sample_level_cube(const request_cube *r, texture_storage store, i32x face, f32x u, f32x v, i32x level,
-                                  colorx *out)
+/* Faces begin with their border: half a texel less for centres, and one more for the border. */
+AMB_INLINE quad_place place_cube(const levelx *l, const cube_point *p)
 {
-    levelx l = level_at(r->texture, level);
-    i32x base = l.base + face * l.slice;
-    f32x x = u * l.width, y = v * l.width;
-    if (r->sampler->filter == AMB_NEAREST) {
-        f32x last = l.width - 1.0f;
-        i32x column = small_to_i(f_min(x, last)) + 1, row = small_to_i(f_min(y, last)) + 1;
-        fetch_texel(r->texture, store, base + row * l.pitch + column, out);
-        return;
-    }
-    x = x + 0.5f; /* minus half a texel for centres, plus one for the border */
-    y = y + 0.5f;
-    f32x left = f_floor(x), above = f_floor(y);
-    fetch_bilinear(r->texture, store, base + small_to_i(above) * l.pitch + small_to_i(left), l.pitch, x - left,
-                   y - above, out);
+    f32x x = p->u * l->width + 0.5f, y = p->v * l->width + 0.5f, left = f_floor(x), above = f_floor(y);
+    i32x texel = l->base + p->face * l->slice + small_to_i(above) * l->pitch + small_to_i(left);
+    return (quad_place){texel, l->pitch, x - left, y - above};
 }
 
 AMB_INLINE void sample_levels_cube(const request_cube *r, texture_storage store, v3x direction,
                                    const lod_levels *levels, colorx *out)
 {
     cube_point p = point_on_cube(direction);
-    sample_level_cube(r, store, p.face, p.u, p.v, levels->near, out);
-    maskx between = levels->blend > 0.0f;
-    if (!m_any(between))
+    levelx near = level_at(r->texture, levels->near);
+    if (r->sampler->filter == AMB_NEAREST) {
+        f32x last = near.width - 1.0f;
+        i32x column = small_to_i(f_min(p.u * near.width, last)) + 1,
+             row = small_to_i(f_min(p.v * near.width, last)) + 1;
+        fetch_texel(r->texture, store, near.base + p.face * near.slice + row * near.pitch + column, out);
         return;
-    colorx far;
-    sample_level_cube(r, store, p.face, p.u, p.v, levels->far, &far);
-    for (int k = 0; k < storage_channels(store); k++)
-        out->c[k] = f_sel(between, f_lerp(out->c[k], far.c[k], levels->blend), out->c[k]);
+    }
+    quad_place at = place_cube(&near, &p);
+    if (!m_any(levels->blend > 0.0f)) {
+        fetch_bilinear(r->texture, store, &at, out);
+        return;
+    }
+    levelx far = level_at(r->texture, levels->far);
+    quad_place far_at = place_cube(&far, &p);
+    fetch_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
 }
 
 AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)

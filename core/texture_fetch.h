@@ -96,25 +96,25 @@ typedef struct {
     f32x c[4];
 } colorx; /* as stored: UNORM8 in 0…255 */
 
-AMB_INLINE void decode_words(texture_storage store, const u32x *word, colorx *out)
+/* Channel k of a texel's words. */
+AMB_INLINE f32x decode_channel(texture_storage store, const u32x *word, int k)
 {
     switch (store) {
     case STORE_UNORM8:
-        for (int k = 0; k < 4; k++)
-            out->c[k] = i_to_f(u_as_i(word[0] >> (unsigned)(8 * k) & 255u));
-        break;
+        return i_to_f(u_as_i(word[0] >> (unsigned)(8 * k) & 255u));
     case STORE_HALF4:
-        for (int k = 0; k < 4; k++)
-            out->c[k] = half_to_f(k & 1 ? word[k >> 1] >> 16 : word[k >> 1] & 0xffffu);
-        break;
+        return half_to_f(k & 1 ? word[k >> 1] >> 16 : word[k >> 1] & 0xffffu);
     case STORE_FLOAT1:
-        out->c[0] = f_from_bits(u_as_i(word[0]));
-        break;
     case STORE_FLOAT4:
-        for (int k = 0; k < 4; k++)
-            out->c[k] = f_from_bits(u_as_i(word[k]));
         break;
     }
+    return f_from_bits(u_as_i(word[k]));
+}
+
+AMB_INLINE void decode_words(texture_storage store, const u32x *word, colorx *out)
+{
+    for (int k = 0; k < storage_channels(store); k++)
+        out->c[k] = decode_channel(store, word, k);
 }
 
 AMB_INLINE void fetch_texel(const amb_texture *t, texture_storage store, i32x texel, colorx *out)
@@ -129,11 +129,9 @@ AMB_INLINE void fetch_texel(const amb_texture *t, texture_storage store, i32x te
     decode_words(store, word, out);
 }
 
-/* A texel and the next one of its row. */
-AMB_INLINE void fetch_pair(const amb_texture *t, texture_storage store, i32x texel, colorx *a, colorx *b)
+/* The words of a texel and of the next one of its row. */
+AMB_INLINE void fetch_pair_words(const amb_texture *t, texture_storage store, i32x texel, u32x word[8])
 {
-    u32x word[8];
-    int words = storage_words(store);
     if (store == STORE_FLOAT4) {
         fetch_4(t->data, texel * 4, word);
         fetch_4(t->data, texel * 4 + 4, word + 4);
@@ -142,8 +140,15 @@ AMB_INLINE void fetch_pair(const amb_texture *t, texture_storage store, i32x tex
     } else {
         fetch_2(t->data, texel, word);
     }
+}
+
+/* Both as colours. */
+AMB_INLINE void fetch_pair(const amb_texture *t, texture_storage store, i32x texel, colorx *a, colorx *b)
+{
+    u32x word[8];
+    fetch_pair_words(t, store, texel, word);
     decode_words(store, word, a);
-    decode_words(store, word + words, b);
+    decode_words(store, word + storage_words(store), b);
 }
 
 AMB_INLINE void lerp_colors(texture_storage store, const colorx *a, const colorx *b, f32x t, colorx *out)
@@ -152,16 +157,53 @@ AMB_INLINE void lerp_colors(texture_storage store, const colorx *a, const colorx
         out->c[k] = f_lerp(a->c[k], b->c[k], t);
 }
 
-/* Bilinear over the 2×2 texels from `texel` on. */
-AMB_INLINE void fetch_bilinear(const amb_texture *t, texture_storage store, i32x texel, i32x pitch, f32x fx, f32x fy,
-                               colorx *out)
+/* Where 2×2 texels lie: the first of them, the distance to the row below, and the weights of the second column and
+ * row. */
+typedef struct {
+    i32x texel, pitch;
+    f32x fx, fy;
+} quad_place;
+
+/* Their words: of the upper two, then of the lower two. */
+typedef struct {
+    u32x word[2][8];
+} quad_words;
+
+AMB_INLINE void fetch_quad(const amb_texture *t, texture_storage store, const quad_place *at, quad_words *q)
 {
-    colorx a, b, top, bottom;
-    fetch_pair(t, store, texel, &a, &b);
-    lerp_colors(store, &a, &b, fx, &top);
-    fetch_pair(t, store, texel + pitch, &a, &b);
-    lerp_colors(store, &a, &b, fx, &bottom);
-    lerp_colors(store, &top, &bottom, fy, out);
+    fetch_pair_words(t, store, at->texel, q->word[0]);
+    fetch_pair_words(t, store, at->texel + at->pitch, q->word[1]);
+}
+
+/* Channel k between the four. */
+AMB_INLINE f32x bilinear_channel(texture_storage store, const quad_place *at, const quad_words *q, int k)
+{
+    const int next = storage_words(store);
+    f32x above = f_lerp(decode_channel(store, q->word[0], k), decode_channel(store, q->word[0] + next, k), at->fx);
+    f32x below = f_lerp(decode_channel(store, q->word[1], k), decode_channel(store, q->word[1] + next, k), at->fx);
+    return f_lerp(above, below, at->fy);
+}
+
+AMB_INLINE void fetch_bilinear(const amb_texture *t, texture_storage store, const quad_place *at, colorx *out)
+{
+    quad_words q;
+    fetch_quad(t, store, at, &q);
+    for (int k = 0; k < storage_channels(store); k++)
+        out->c[k] = bilinear_channel(store, at, &q, k);
+}
+
+/* Between two levels, both at once: their chains of operations hide each other's latencies. */
+AMB_INLINE void fetch_trilinear(const amb_texture *t, texture_storage store, const quad_place *near,
+                                const quad_place *far, f32x blend, colorx *out)
+{
+    quad_words a, b;
+    maskx between = blend > 0.0f; /* a far texel that is infinite must not count where it has no weight */
+    fetch_quad(t, store, near, &a);
+    fetch_quad(t, store, far, &b);
+    for (int k = 0; k < storage_channels(store); k++) {
+        f32x near_k = bilinear_channel(store, near, &a, k), far_k = bilinear_channel(store, far, &b, k);
+        out->c[k] = f_sel(between, f_lerp(near_k, far_k, blend), near_k);
+    }
 }
 
 AMB_INLINE v4x finish_color(texture_storage store, const colorx *c)
@@ -201,10 +243,12 @@ AMB_INLINE i32x lookup_level(const void *table, i32x index)
 
 AMB_INLINE levelx level_at(const amb_texture *t, i32x level)
 {
+#if !(AMB_X86 && AMB_LANES == 16) /* where a look-up costs more than finding out that all lanes agree */
     int first = i_lane(level, 0);
     if (m_all(level == first))
         return (levelx){i_set(t->base[first]),  i_set(t->pitch[first]),  i_set(t->slice[first]),
                         f_set(t->width[first]), f_set(t->height[first]), f_set(t->depth[first])};
+#endif
     return (levelx){lookup_level(t->base, level),
                     lookup_level(t->pitch, level),
                     lookup_level(t->slice, level),
@@ -232,8 +276,8 @@ typedef struct {
 AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f32x lod)
 {
     float last = (float)(t->info.levels - 1), top = s->lod_max > 0.0f && s->lod_max < last ? s->lod_max : last;
-    lod = f_clamp(lod + s->lod_bias, f_set(s->lod_min), f_set(top));
-    lod = f_clamp(lod, f_set(0.0f), f_set(last));
+    float first = amb_s_max(amb_s_min(s->lod_min, top), 0.0f);
+    lod = f_clamp(lod + s->lod_bias, f_set(first), f_set(top));
     if (s->filter != AMB_TRILINEAR) {
         i32x level = small_to_i(lod + 0.5f);
         return (lod_levels){level, level, f_set(0.0f)};

@@ -36,6 +36,7 @@ struct amb_texture {
     float width[AMB_MAX_TEXTURE_LEVELS], height[AMB_MAX_TEXTURE_LEVELS], depth[AMB_MAX_TEXTURE_LEVELS];
 };
 
+#define TEXTURE_LINE_WORDS 16  /* of a cache line; every row begins one */
 #define TEXTURE_SLACK_WORDS 16 /* readable beyond the last texel */
 
 /* Size of a dimension at a level. */

@@ -14,36 +14,43 @@ typedef struct {
     i32x layer; /* of arrays */
 } request_2d;
 
-AMB_INLINE void sample_level_2d(const request_2d *r, texture_storage store, v2x uv, i32x level, colorx *out)
+AMB_INLINE levelx level_2d(const request_2d *r, i32x level)
 {
     levelx l = level_at(r->texture, level);
-    const amb_wrap *wrap = r->sampler->wrap;
     if (r->layered)
         l.base += r->layer * l.slice;
-    if (r->sampler->filter == AMB_NEAREST) {
-        i32x x = wrap_nearest(uv.x, l.width, wrap[0]), y = wrap_nearest(uv.y, l.height, wrap[1]);
-        fetch_texel(r->texture, store, l.base + y * l.pitch + x, out);
-        return;
-    }
+    return l;
+}
+
+AMB_INLINE quad_place place_2d(const levelx *l, const wrapped *u, const wrapped *v)
+{
     i32x x, y;
-    f32x fx = wrap_linear(uv.x, l.width, wrap[0], &x), fy = wrap_linear(uv.y, l.height, wrap[1], &y);
-    fetch_bilinear(r->texture, store, l.base + y * l.pitch + x, l.pitch, fx, fy, out);
+    f32x fx = texel_left_of(u, l->width, &x), fy = texel_left_of(v, l->height, &y);
+    return (quad_place){l->base + y * l->pitch + x, l->pitch, fx, fy};
 }
 
 /* A lane between two levels blends them; the second is fetched only when some lane needs it. */
 AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x uv, const lod_levels *levels,
                                  colorx *out)
 {
+    const amb_wrap *wrap = r->sampler->wrap;
     uv.x = finite_or_zero(uv.x);
     uv.y = finite_or_zero(uv.y);
-    sample_level_2d(r, store, uv, levels->near, out);
-    maskx between = levels->blend > 0.0f;
-    if (!m_any(between))
+    levelx near = level_2d(r, levels->near);
+    if (r->sampler->filter == AMB_NEAREST) {
+        i32x x = wrap_nearest(uv.x, near.width, wrap[0]), y = wrap_nearest(uv.y, near.height, wrap[1]);
+        fetch_texel(r->texture, store, near.base + y * near.pitch + x, out);
         return;
-    colorx far;
-    sample_level_2d(r, store, uv, levels->far, &far);
-    for (int k = 0; k < storage_channels(store); k++)
-        out->c[k] = f_sel(between, f_lerp(out->c[k], far.c[k], levels->blend), out->c[k]);
+    }
+    wrapped u = wrap_coordinate(uv.x, wrap[0]), v = wrap_coordinate(uv.y, wrap[1]);
+    quad_place at = place_2d(&near, &u, &v);
+    if (!m_any(levels->blend > 0.0f)) {
+        fetch_bilinear(r->texture, store, &at, out);
+        return;
+    }
+    levelx far = level_2d(r, levels->far);
+    quad_place far_at = place_2d(&far, &u, &v);
+    fetch_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
 }
 
 AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
@@ -84,6 +91,48 @@ static __attribute__((noinline)) v4x sample_2d_float4(const request_2d *r)
     return sample_request_2d(r, STORE_FLOAT4);
 }
 
+/* One tap of a texture without layers, the usual case: its numbers stay in registers. */
+AMB_INLINE v4x sample_tap_2d(const amb_texture *texture, const amb_sampler *sampler, texture_storage store, f32x u,
+                             f32x v, f32x lod)
+{
+    const request_2d r = {.texture = texture, .sampler = sampler};
+    lod_levels levels = pick_levels(texture, sampler, lod);
+    colorx c;
+    sample_levels_2d(&r, store, v2x_of(u, v), &levels, &c);
+    return finish_color(store, &c);
+}
+static __attribute__((noinline)) v4x tap_2d_unorm8(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
+{
+    return sample_tap_2d(t, s, STORE_UNORM8, u, v, lod);
+}
+static __attribute__((noinline)) v4x tap_2d_half4(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
+{
+    return sample_tap_2d(t, s, STORE_HALF4, u, v, lod);
+}
+static __attribute__((noinline)) v4x tap_2d_float1(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
+{
+    return sample_tap_2d(t, s, STORE_FLOAT1, u, v, lod);
+}
+static __attribute__((noinline)) v4x tap_2d_float4(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
+{
+    return sample_tap_2d(t, s, STORE_FLOAT4, u, v, lod);
+}
+
+AMB_INLINE v4x tap_2d(const amb_texture *t, const amb_sampler *s, v2x uv, f32x lod)
+{
+    switch (t->storage) {
+    case STORE_UNORM8:
+        return tap_2d_unorm8(t, s, uv.x, uv.y, lod);
+    case STORE_HALF4:
+        return tap_2d_half4(t, s, uv.x, uv.y, lod);
+    case STORE_FLOAT1:
+        return tap_2d_float1(t, s, uv.x, uv.y, lod);
+    case STORE_FLOAT4:
+        break;
+    }
+    return tap_2d_float4(t, s, uv.x, uv.y, lod);
+}
+
 AMB_INLINE v4x sample_2d(const request_2d *r)
 {
     switch (r->texture->storage) {
@@ -101,16 +150,20 @@ AMB_INLINE v4x sample_2d(const request_2d *r)
 
 v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod)
 {
-    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .lod = lod, .taps = f_set(1.0f), .most_taps = 1};
-    return sample_2d(&r);
+    return tap_2d(texture, sampler, uv, lod);
+}
+
+AMB_INLINE footprintx footprint_2d(const amb_texture *texture, v2x ddx, v2x ddy, int max_anisotropy)
+{
+    f32x width = f_set(texture->width[0]), height = f_set(texture->height[0]);
+    v2x dx = v2x_of(ddx.x * width, ddx.y * height), dy = v2x_of(ddy.x * width, ddy.y * height);
+    return footprint(v2x_dot(dx, dx), v2x_dot(dy, dy), max_anisotropy);
 }
 
 AMB_INLINE request_2d request_with_gradients(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx,
                                              v2x ddy)
 {
-    f32x width = f_set(texture->width[0]), height = f_set(texture->height[0]);
-    v2x dx = v2x_of(ddx.x * width, ddx.y * height), dy = v2x_of(ddy.x * width, ddy.y * height);
-    footprintx f = footprint(v2x_dot(dx, dx), v2x_dot(dy, dy), sampler->max_anisotropy);
+    footprintx f = footprint_2d(texture, ddx, ddy, sampler->max_anisotropy);
     return (request_2d){.texture = texture,
                         .sampler = sampler,
                         .uv = uv,
@@ -122,6 +175,8 @@ AMB_INLINE request_2d request_with_gradients(const amb_texture *texture, const a
 
 v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy)
 {
+    if (sampler->max_anisotropy <= 1)
+        return tap_2d(texture, sampler, uv, footprint_2d(texture, ddx, ddy, 1).lod);
     request_2d r = request_with_gradients(texture, sampler, uv, ddx, ddy);
     return sample_2d(&r);
 }
@@ -144,7 +199,10 @@ v4x amb_sample_2d_array_grad(const amb_texture *texture, const amb_sampler *samp
 #if AMB_LANES > 1
 v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv)
 {
-    return amb_sample_2d_grad(texture, sampler, uv, v2x_of(f_ddx(uv.x), f_ddx(uv.y)), v2x_of(f_ddy(uv.x), f_ddy(uv.y)));
+    v2x ddx = v2x_of(f_ddx(uv.x), f_ddx(uv.y)), ddy = v2x_of(f_ddy(uv.x), f_ddy(uv.y));
+    if (sampler->max_anisotropy <= 1)
+        return tap_2d(texture, sampler, uv, footprint_2d(texture, ddx, ddy, 1).lod);
+    return amb_sample_2d_grad(texture, sampler, uv, ddx, ddy);
 }
 
 v4x amb_sample_2d_array(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer)
@@ -169,10 +227,11 @@ AMB_INLINE void sample_level_3d(const amb_texture *t, const amb_sampler *s, text
     i32x x, y, z;
     f32x fx = wrap_linear(uvw.x, l.width, s->wrap[0], &x), fy = wrap_linear(uvw.y, l.height, s->wrap[1], &y);
     f32x fz = wrap_linear(uvw.z, l.depth, s->wrap[2], &z);
-    i32x at = l.base + z * l.slice + y * l.pitch + x;
+    quad_place at = {l.base + z * l.slice + y * l.pitch + x, l.pitch, fx, fy};
     colorx near, far;
-    fetch_bilinear(t, store, at, l.pitch, fx, fy, &near);
-    fetch_bilinear(t, store, at + l.slice, l.pitch, fx, fy, &far);
+    fetch_bilinear(t, store, &at, &near);
+    at.texel += l.slice;
+    fetch_bilinear(t, store, &at, &far);
     lerp_colors(store, &near, &far, fz, out);
 }
 
