@@ -338,8 +338,11 @@ static void fill_strip(raster_pattern *p, const ring *r)
     const uint32_t turned = !along_u && (quads & 1u) ? quads / 2 : quads; /* this one's diagonal runs the other way */
     for (uint32_t n = 0; n < quads; n++) {
         uint16_t a = at(r, near + n), b = at(r, near + n + 1), c = at(r, far - n - 1), d = at(r, far - n);
+        if (n == turned)
+            add_triangle(p, a, c, d);
         add_triangle(p, a, b, n == turned ? c : d);
-        add_triangle(p, n == turned ? a : b, c, d);
+        if (n != turned)
+            add_triangle(p, b, c, d);
     }
 }
 

@@ -1,5 +1,6 @@
 /* The tessellator against the rules of Direct3D 11, and tessellated draws against exact coverage. */
 #include "raster/internal.h"
+#include "tests/raster_shaders.h"
 #include "tests/stage_shaders.h"
 
 #include <math.h>
@@ -148,6 +149,153 @@ static void patterns_cover_their_domain_once(void **state)
     raster_free_pattern(&p);
 }
 
+/* ---- against another implementation ----------------------------------------------------------------------------- */
+
+/* Patch number n of the list that was run on another implementation. */
+static void listed_patch(uint32_t n, amb_patch_shape *shape, amb_partitioning *partitioning, factors *f)
+{
+    uint32_t bits = n * 2654435761u;
+    *shape = (amb_patch_shape)(n & 1u);
+    *partitioning = (amb_partitioning)(n / 2 % 3);
+    for (int i = 0; i < 6; i++) {
+        bits = bits * 1664525u + 1013904223u;
+        float a = (float)(bits >> 8) * (n / 6 & 1u ? 0x1p-21f : 0x1p-18f) + 0.01f; /* up to 8, up to 64 */
+        *(i < 4 ? &f->edge[i] : &f->inside[i - 4]) = a;
+    }
+}
+
+/* FNV-1a of a triangle's coordinates in 1/65536, its lowest corner first. */
+static uint64_t hash_triangle(uint64_t hash, const float u[3], const float v[3])
+{
+    int first = 0;
+    for (int k = 1; k < 3; k++)
+        if (u[k] < u[first] || (u[k] == u[first] && v[k] < v[first]))
+            first = k;
+    for (int k = 0; k < 6; k++) {
+        float a = k & 1 ? v[(first + k / 2) % 3] : u[(first + k / 2) % 3];
+        hash = (hash ^ (uint64_t)(a * 65536.0f)) * 0x100000001b3u;
+    }
+    return hash;
+}
+
+/* 1200 patches, triangle by triangle and in their order, as Mesa 22.3's llvmpipe tessellates them in OpenGL (read back
+ * by transform feedback), whose tessellator is Microsoft's reference. */
+static void patterns_are_those_of_direct3d(void **state)
+{
+    (void)state;
+    raster_pattern p = {0};
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (uint32_t n = 0; n < 1200; n++) {
+        amb_patch_shape shape;
+        amb_partitioning partitioning;
+        factors f;
+        listed_patch(n, &shape, &partitioning, &f);
+        const raster_factors clamped = raster_clamp_factors(shape, partitioning, f.edge, f.inside);
+        assert_true(raster_make_pattern(&p, shape, partitioning, &clamped));
+        for (uint32_t i = 0; i < p.size.triangles; i++) {
+            const uint16_t *c = p.corner + (size_t)3 * i;
+            hash = hash_triangle(hash, (float[3]){p.u[c[0]], p.u[c[1]], p.u[c[2]]},
+                                 (float[3]){p.v[c[0]], p.v[c[1]], p.v[c[2]]});
+        }
+    }
+    raster_free_pattern(&p);
+    assert_true(hash == 0x375ba0b7ad35132fu);
+}
+
+/* ---- points on an edge ------------------------------------------------------------------------------------------ */
+
+/* When marks of a ruler are made coarse to fine, left to right: where is number n? */
+static double ruler(int n)
+{
+    int level = 1;
+    while (level * 2 <= n)
+        level *= 2;
+    return n == 0 ? 0.0 : (2.0 * (n - level) + 1.0) / (2.0 * level);
+}
+
+/* Point n of a factor's edge, without rounding: between the places it has at the whole factors below and above, where
+ * the mark that is new above comes out of its neighbour. */
+static double true_place(double factor, amb_partitioning partitioning, int n, int segments)
+{
+    if (2 * n > segments)
+        return 1.0 - true_place(factor, partitioning, segments - n, segments);
+    if (partitioning == AMB_INTEGER)
+        return (double)n / segments;
+    const int odd = partitioning == AMB_FRACTIONAL_ODD, high = segments, low = factor < high ? high - 2 : high;
+    if (low == high || 2 * n == segments)
+        return (double)n / segments;
+    const int mark = odd ? (low - 1) / 2 : low / 2;
+    int rank = 0;
+    for (int k = 0; k < mark; k++)
+        rank += ruler(k) < ruler(mark);
+    const double below = (double)(n > rank ? n - 1 : n) / low, above = (double)n / high, t = (factor - low) / 2.0;
+    return below + (above - below) * t;
+}
+
+static void check_edge(float factor, amb_partitioning partitioning)
+{
+    static raster_pattern p;
+    const float edge[4] = {1.0f, factor, 1.0f, 1.0f}, inside[2] = {3.0f, 3.0f};
+    const raster_factors f = raster_clamp_factors(AMB_QUAD, partitioning, edge, inside);
+    const double used = (double)f.edge[1] / 65536.0;
+    const int first = (int)segments_of(f.edge[0], partitioning), segments = (int)segments_of(f.edge[1], partitioning);
+    assert_true(raster_make_pattern(&p, AMB_QUAD, partitioning, &f));
+    for (int n = 0; n <= segments; n++) { /* the edge v = 0 comes second */
+        const uint32_t at = (uint32_t)(first + n), mirrored = (uint32_t)(first + segments - n);
+        assert_true(p.v[at] == 0.0f);
+        assert_true(p.u[at] == 1.0f - p.u[mirrored]);
+        assert_true(n == 0 || p.u[at] >= p.u[at - 1]);
+        /* Direct3D multiplies by reciprocals of 16 bits: up to 32 times half a unit, and a rounding */
+        if (fabs((double)p.u[at] - true_place(used, partitioning, n, segments)) > 16.6 / 65536.0)
+            fail_msg("factor %g, partitioning %d, point %d: %g, not %g", (double)factor, (int)partitioning, n,
+                     (double)p.u[at], true_place(used, partitioning, n, segments));
+    }
+    assert_true(p.u[first] == 0.0f && p.u[first + segments] == 1.0f);
+    raster_free_pattern(&p);
+}
+
+static void edges_are_divided_as_the_rules_say(void **state)
+{
+    (void)state;
+    for (int partitioning = AMB_INTEGER; partitioning <= AMB_FRACTIONAL_EVEN; partitioning++)
+        for (int i = 1; i <= 64 * 37; i++)
+            check_edge((float)i / 37.0f, (amb_partitioning)partitioning);
+}
+
+static void factors_are_clamped_or_cull(void **state)
+{
+    (void)state;
+    const float inside[2] = {2.0f, 2.0f};
+    static const float culling[5] = {0.0f, -0.0f, -3.0f, NAN, -INFINITY};
+    for (int partitioning = AMB_INTEGER; partitioning <= AMB_FRACTIONAL_EVEN; partitioning++)
+        for (int shape = AMB_QUAD; shape <= AMB_TRIANGLE; shape++)
+            for (int e = 0; e < 4; e++)
+                for (int i = 0; i < 5; i++) {
+                    float edge[4] = {5.0f, 5.0f, 5.0f, 5.0f};
+                    edge[e] = culling[i];
+                    raster_factors f =
+                        raster_clamp_factors((amb_patch_shape)shape, (amb_partitioning)partitioning, edge, inside);
+                    assert_true((f.edge[0] == 0) == (e < 3 || shape == AMB_QUAD));
+                }
+    static const float in[7] = {0.25f, 1.0f, 1.5f, 2.25f, 63.5f, 64.0f, INFINITY};
+    static const double out[3][7] = {
+        {1, 1, 2, 3, 64, 64, 64}, {1, 1, 1.5, 2.25, 63, 63, 63}, {2, 2, 2, 2.25, 63.5, 64, 64}};
+    for (int partitioning = AMB_INTEGER; partitioning <= AMB_FRACTIONAL_EVEN; partitioning++)
+        for (int i = 0; i < 7; i++) {
+            const float edge[4] = {in[i], in[i], in[i], in[i]};
+            raster_factors f = raster_clamp_factors(AMB_QUAD, (amb_partitioning)partitioning, edge, edge);
+            assert_true((double)f.edge[3] / 65536.0 == out[partitioning][i]);
+            assert_true((double)f.inside[1] / 65536.0 == out[partitioning][i]);
+        }
+    /* Inside factors that are no number, or below one, are the least; a fractional odd one leaves room for a ring. */
+    const float two[4] = {2.0f, 2.0f, 2.0f, 2.0f}, none[2] = {NAN, -INFINITY};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(raster_clamp_factors(AMB_QUAD, AMB_INTEGER, two, none).inside[i], 65536);
+        assert_int_equal(raster_clamp_factors(AMB_QUAD, AMB_FRACTIONAL_ODD, two, none).inside[i], 65537);
+        assert_int_equal(raster_clamp_factors(AMB_QUAD, AMB_FRACTIONAL_EVEN, two, none).inside[i], 131072);
+    }
+}
+
 /* ---- drawing ---------------------------------------------------------------------------------------------------- */
 
 typedef struct mesh {
@@ -242,31 +390,56 @@ static amb_draw mesh_draw(const amb_context *context, const mesh *m, stage_test_
     return d;
 }
 
-/* Patches of different factors meet without crack or overlap: signed coverage is one everywhere. */
+static amb_context *make_context(amb_isa isa, int threads)
+{
+    amb_context *context = NULL;
+    const amb_context_options options = {.isa = isa, .threads = threads};
+    assert_int_equal(amb_context_create(&options, &context, NULL), AMB_OK);
+    return context;
+}
+
+#define WIDTH 320
+#define HEIGHT 200
+
+static amb_image *run(const amb_context *context, const amb_draw *draw, int tile_size, size_t batch_bytes,
+                      amb_pass_stats *stats)
+{
+    amb_image *image = NULL;
+    amb_pass *pass = NULL;
+    amb_error error = {0};
+    assert_int_equal(amb_image_create(WIDTH, HEIGHT, 4, &image, NULL), AMB_OK);
+    amb_target target = {.color = {image}};
+    assert_int_equal(raster_pass_begin(context, &target, tile_size, batch_bytes, &pass, NULL), AMB_OK);
+    if (amb_pass_draw(pass, draw, &error) != AMB_OK)
+        fail_msg("%s", error.detail);
+    assert_int_equal(amb_pass_finish(&pass, stats, NULL), AMB_OK);
+    return image;
+}
+
+static void assert_same_pixels(const amb_image *a, const amb_image *b)
+{
+    for (int c = 0; c < a->channels; c++)
+        for (int y = 0; y < a->height; y++)
+            assert_memory_equal(amb_image_row(a, c, y), amb_image_row(b, c, y), (size_t)a->width * sizeof(float));
+}
+
+/* Patches of different factors meet without crack or overlap: coverage is one everywhere, where what rounding to the
+ * window's grid turned over counts against it. */
 static void meshes_cover_every_pixel_once(void **state)
 {
     (void)state;
-    amb_context *context = NULL;
-    assert_int_equal(amb_context_create(NULL, &context, NULL), AMB_OK);
-    for (uint32_t round = 0; round < 24; round++) {
+    amb_context *context = make_context(AMB_ISA_AUTO, 2);
+    for (uint32_t round = 0; round < 36; round++) {
         const amb_patch_shape shape = round & 1u ? AMB_TRIANGLE : AMB_QUAD;
         const amb_partitioning partitioning = (amb_partitioning)(round / 2 % 3);
         mesh m = make_mesh(2 + (int)round % 5, 3 + (int)round % 4, shape, round + 1);
-        amb_image *image = NULL;
-        amb_pass *pass = NULL;
         stage_test_uniforms uniforms;
-        amb_error error = {0};
         amb_pass_stats stats;
-        assert_int_equal(amb_image_create(320, 200, 2, &image, NULL), AMB_OK);
-        amb_target target = {.color = {image}};
-        assert_int_equal(amb_pass_begin(context, &target, &pass, NULL), AMB_OK);
         amb_draw d = mesh_draw(context, &m, &uniforms, shape, partitioning);
-        if (amb_pass_draw(pass, &d, &error) != AMB_OK)
-            fail_msg("%s", error.detail);
-        assert_int_equal(amb_pass_finish(&pass, &stats, NULL), AMB_OK);
+        amb_image *image = run(context, &d, 64, RASTER_BATCH_BYTES, &stats);
         int wrong = 0;
-        for (int y = 0; y < 200; y++)
-            for (int x = 0; x < 320; x++)
+        for (int y = 0; y < HEIGHT; y++)
+            for (int x = 0; x < WIDTH; x++)
                 wrong += amb_image_row(image, 0, y)[x] != 1.0f;
         if (wrong != 0)
             fail_msg("round %u: %d pixels are not covered once", round, wrong);
@@ -278,11 +451,241 @@ static void meshes_cover_every_pixel_once(void **state)
     amb_context_close(&context);
 }
 
+/* ---- draws against the same triangles drawn one by one ---------------------------------------------------------- */
+
+static raster_test_vertex evaluate(const mesh *m, amb_patch_shape shape, uint32_t patch, float u, float v)
+{
+    const uint32_t *c = m->index + patch * (shape == AMB_QUAD ? 4 : 3);
+    const float *p[4];
+    raster_test_vertex out;
+    float *clip = &out.clip.x;
+    for (uint32_t k = 0; k < 4; k++)
+        p[k] = &m->clip[c[k < 3 || shape == AMB_QUAD ? k : 0]].x;
+    for (int i = 0; i < 4; i++) {
+        if (shape == AMB_QUAD)
+            clip[i] = (p[0][i] * ((1.0f - u) * (1.0f - v)) + p[1][i] * (u * (1.0f - v))) +
+                      (p[2][i] * (u * v) + p[3][i] * ((1.0f - u) * v));
+        else
+            clip[i] = (p[0][i] * u + p[1][i] * v) + p[2][i] * ((1.0f - u) - v);
+    }
+    out.value = (v4){u, v, (float)patch, 0.0f};
+    return out;
+}
+
+typedef struct list {
+    raster_test_vertex *vertex;
+    uint32_t count;
+} list;
+
+/* Every triangle of every patch, or every point. */
+static list expand(const mesh *m, const amb_tessellation *t)
+{
+    list l = {NULL, 0};
+    raster_pattern p = {0};
+    for (uint32_t patch = 0; patch < m->patches; patch++) {
+        const float *factor = m->factor + (size_t)patch * 6;
+        const raster_factors f = raster_clamp_factors(t->shape, t->partitioning, factor, factor + 4);
+        if (f.edge[0] == 0)
+            continue;
+        assert_true(raster_make_pattern(&p, t->shape, t->partitioning, &f));
+        const uint32_t corners = t->points ? p.size.points : 3 * p.size.triangles;
+        l.vertex = realloc(l.vertex, (l.count + corners) * sizeof *l.vertex);
+        assert_non_null(l.vertex);
+        for (uint32_t i = 0; i < corners; i++) {
+            uint32_t from = t->clockwise ? i - i % 3 + (3 - i % 3) % 3 : i, point = t->points ? i : p.corner[from];
+            l.vertex[l.count++] = evaluate(m, t->shape, patch, p.u[point], p.v[point]);
+        }
+    }
+    raster_free_pattern(&p);
+    return l;
+}
+
+static void compare_draws(const amb_context *context, const amb_draw *draw, const mesh *m, amb_topology output)
+{
+    const raster_test_shaders *plain = raster_test_shaders_of(amb_context_isa(context));
+    const list expected = expand(m, &draw->tessellation);
+    const raster_test_uniforms uniforms = {.vertex = expected.vertex};
+    amb_draw direct = *draw;
+    amb_pass_stats stats, direct_stats;
+    direct.vertex = plain->vertex;
+    direct.uniforms = &uniforms;
+    direct.uniforms_size = sizeof uniforms;
+    direct.indices = NULL;
+    direct.vertex_count = 0;
+    direct.count = expected.count;
+    direct.topology = output;
+    direct.tessellation = (amb_tessellation){0};
+    direct.geometry = (amb_geometry){0};
+    amb_image *a = run(context, draw, 64, RASTER_BATCH_BYTES, &stats);
+    amb_image *b = run(context, &direct, 64, RASTER_BATCH_BYTES, &direct_stats);
+    assert_same_pixels(a, b);
+    assert_int_equal(stats.triangles_in, direct_stats.triangles_in);
+    assert_int_equal(stats.triangles_culled, direct_stats.triangles_culled);
+    assert_int_equal(stats.triangles_binned, direct_stats.triangles_binned);
+    assert_int_equal(stats.fragments_shaded, direct_stats.fragments_shaded);
+    assert_true(stats.fragments_shaded > 2000);
+    amb_image_close(&a);
+    amb_image_close(&b);
+    free(expected.vertex);
+}
+
+/* Blended in order, with culling, both turns, wireframe, points, a geometry shader behind, and some patches culled. */
+static void draws_are_their_triangles(void **state)
+{
+    (void)state;
+    amb_context *context = make_context(AMB_ISA_AUTO, 2);
+    const stage_test_shaders *s = stage_test_shaders_of(amb_context_isa(context));
+    for (uint32_t round = 0; round < 24; round++) {
+        const amb_patch_shape shape = round & 1u ? AMB_TRIANGLE : AMB_QUAD;
+        mesh m = make_mesh(4, 5, shape, round + 100);
+        stage_test_uniforms uniforms;
+        amb_draw d = mesh_draw(context, &m, &uniforms, shape, (amb_partitioning)(round / 2 % 3));
+        for (uint32_t i = 0; i < m.patches * 6 && round % 6 == 5; i++)
+            m.factor[i] = 64.0f; /* more than a chunk holds */
+        for (uint32_t patch = 0; patch < m.patches; patch++)
+            if (patch % 5 == 2)
+                m.factor[patch * 6 + patch % 3] = patch % 2 ? NAN : 0.0f;
+        d.fragment = s->shade;
+        d.blend[0] = AMB_BLEND_ALPHA;
+        d.tessellation.clockwise = round % 3 == 1;
+        d.tessellation.points = round % 8 == 7;
+        d.wireframe = round % 8 == 6;
+        d.cull = round % 4 != 3 ? AMB_CULL_NONE : d.tessellation.clockwise ? AMB_CULL_FRONT : AMB_CULL_BACK;
+        d.point_size = 3.0f;
+        if (round / 6 % 2 == 1 && !d.tessellation.points)
+            d.geometry = (amb_geometry){.shader = s->same, .vertices = 3};
+        compare_draws(context, &d, &m, d.tessellation.points ? AMB_POINTS : AMB_TRIANGLES);
+        free_mesh(&m);
+    }
+    amb_context_close(&context);
+}
+
+/* ---- same everywhere -------------------------------------------------------------------------------------------- */
+
+/* Enough patches for several windows, some of 8192 triangles, which no chunk holds. */
+static void pixels_depend_on_nothing_else(void **state)
+{
+    (void)state;
+    static const amb_isa isas[3] = {AMB_ISA_V2, AMB_ISA_V3, AMB_ISA_V4};
+    static const int tiles[4] = {16, 32, 64, 128};
+    for (int which = 0; which < 2; which++) {
+        mesh m = make_mesh(which ? 150 : 6, which ? 120 : 5, AMB_QUAD, 7);
+        amb_image *first = NULL;
+        amb_pass_stats first_stats = {0};
+        for (uint32_t i = 0; i < m.patches * 6; i++)
+            m.factor[i] = which ? 1.0f + 0.5f * (float)(i * 7 % 5) : 64.0f - (float)(i % 4);
+        for (int i = 0; i < 12; i++) {
+            if (!amb_isa_available(isas[i % 3]))
+                continue;
+            amb_context *context = make_context(isas[i % 3], 1 + i % 5);
+            stage_test_uniforms uniforms;
+            amb_pass_stats stats;
+            amb_draw d = mesh_draw(context, &m, &uniforms, AMB_QUAD, AMB_FRACTIONAL_EVEN);
+            d.fragment = stage_test_shaders_of(isas[i % 3])->number;
+            amb_image *image = run(context, &d, tiles[i / 3], i & 1 ? 0 : RASTER_BATCH_BYTES, &stats);
+            if (!first) {
+                first = image, first_stats = stats;
+            } else {
+                stats.blocks_shaded = first_stats.blocks_shaded; /* which depends on the lanes */
+                assert_memory_equal(&stats, &first_stats, sizeof stats);
+                assert_same_pixels(first, image);
+                amb_image_close(&image);
+            }
+            amb_context_close(&context);
+        }
+        assert_true(first_stats.triangles_in > 100000);
+        amb_image_close(&first);
+        free_mesh(&m);
+    }
+}
+
+/* ---- instances, indices, errors --------------------------------------------------------------------------------- */
+
+static void instances_and_bad_indices(void **state)
+{
+    (void)state;
+    amb_context *context = make_context(AMB_ISA_AUTO, 2);
+    const stage_test_shaders *s = stage_test_shaders_of(amb_context_isa(context));
+    mesh m = make_mesh(5, 5, AMB_QUAD, 3);
+    stage_test_uniforms uniforms;
+    amb_pass_stats stats;
+    m.factor = realloc(m.factor, (size_t)m.patches * 18 * sizeof *m.factor);
+    for (uint32_t i = m.patches * 6; i < m.patches * 18; i++)
+        m.factor[i] = i % 6 == 0 && i / 6 % 25 < 3 ? 0.0f : 2.0f; /* three patches culled, of two instances */
+    m.index[4 * 7 + 1] = 36;                                      /* one more than there are */
+    m.index[4 * 9 + 3] = UINT32_MAX;
+    amb_draw d = mesh_draw(context, &m, &uniforms, AMB_QUAD, AMB_INTEGER);
+    d.instances = 3;
+    d.fragment = s->number;
+    d.blend[0] = AMB_BLEND_OFF;
+    amb_image *image = run(context, &d, 64, RASTER_BATCH_BYTES, &stats);
+    assert_int_equal(stats.patches, 75);
+    assert_int_equal(stats.patches_culled, 2 * 3 + 2 * 3);
+    int seen[75] = {0};
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const int patch = (int)amb_image_row(image, 2, y)[x];
+            assert_in_range(patch, 0, 74);
+            if (amb_image_row(image, 3, y)[x] != 0.0f)
+                assert_int_equal(patch, (int)amb_image_row(image, 3, y)[x]); /* the hull's number, the fragment's */
+            seen[patch]++;
+        }
+    for (int i = 50; i < 75; i++) /* the last instance is on top, but for what it lacks */
+        assert_true((seen[i] > 0) == (i >= 53 && i != 57 && i != 59));
+    amb_image_close(&image);
+    free_mesh(&m);
+    amb_context_close(&context);
+}
+
+static void refuse(amb_pass *pass, const amb_draw *draw, const char *text)
+{
+    amb_error error = {0};
+    assert_int_equal(amb_pass_draw(pass, draw, &error), AMB_ERROR_ARGUMENT);
+    if (!strstr(error.detail, text))
+        fail_msg("'%s' does not contain '%s'", error.detail, text);
+}
+
+static void bad_draws_are_refused(void **state)
+{
+    (void)state;
+    amb_context *context = make_context(AMB_ISA_AUTO, 1);
+    mesh m = make_mesh(2, 2, AMB_QUAD, 1);
+    stage_test_uniforms uniforms;
+    amb_image *image = NULL;
+    amb_pass *pass = NULL;
+    assert_int_equal(amb_image_create(8, 8, 4, &image, NULL), AMB_OK);
+    amb_target target = {.color = {image}};
+    assert_int_equal(amb_pass_begin(context, &target, &pass, NULL), AMB_OK);
+    amb_draw good = mesh_draw(context, &m, &uniforms, AMB_QUAD, AMB_INTEGER), d;
+    assert_int_equal(amb_pass_draw(pass, &good, NULL), AMB_OK);
+    d = good, d.tessellation.hull = NULL, refuse(pass, &d, "patches need a hull shader");
+    d = good, d.tessellation.domain = NULL, refuse(pass, &d, "patches need a domain shader");
+    d = good, d.topology = AMB_TRIANGLES, refuse(pass, &d, "a hull shader needs the topology AMB_PATCHES");
+    d = good, d.tessellation.corners = 0, refuse(pass, &d, "tessellation.corners is 0; 1 to 32 are allowed");
+    d = good, d.tessellation.corners = 33, refuse(pass, &d, "tessellation.corners is 33");
+    d = good, d.tessellation.patch_floats = 129, refuse(pass, &d, "tessellation.patch_floats is 129; 0 to 128");
+    d = good, d.tessellation.shape = (amb_patch_shape)2, refuse(pass, &d, "tessellation.shape is 2; 0 to 1");
+    d = good, d.tessellation.partitioning = (amb_partitioning)3, refuse(pass, &d, "tessellation.partitioning is 3");
+    d = good, d.vertex = stage_test_shaders_of(amb_context_isa(context))->vertex;
+    refuse(pass, &d, "patches have no vertex shader");
+    amb_pass_close(&pass);
+    amb_image_close(&image);
+    free_mesh(&m);
+    amb_context_close(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(patterns_cover_their_domain_once),
+        cmocka_unit_test(patterns_are_those_of_direct3d),
+        cmocka_unit_test(edges_are_divided_as_the_rules_say),
+        cmocka_unit_test(factors_are_clamped_or_cull),
         cmocka_unit_test(meshes_cover_every_pixel_once),
+        cmocka_unit_test(draws_are_their_triangles),
+        cmocka_unit_test(pixels_depend_on_nothing_else),
+        cmocka_unit_test(instances_and_bad_indices),
+        cmocka_unit_test(bad_draws_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
