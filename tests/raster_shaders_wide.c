@@ -107,6 +107,7 @@ static void table(const amb_fs_in *in, amb_fs_out *out)
 {
     const raster_test_uniforms *u = in->uniforms;
     i32x first = (f_to_i(in->y) * u->table_width + f_to_i(in->x)) * 4;
+    first = i_sel(in->live, first, i_set(0)); /* blocks reach over the target's edge */
     v4x value = {f_gather(u->table, first), f_gather(u->table, first + 1), f_gather(u->table, first + 2),
                  f_gather(u->table, first + 3)};
     for (int i = 0; i < AMB_MAX_TARGETS; i++)
