@@ -36,7 +36,7 @@ typedef struct amb_vs_out {
 typedef struct amb_fs_in {
     const void *uniforms;
     const void *varyings; /* as written by the vertex stage, interpolated */
-    f32x x, y;            /* pixel centre in window coordinates, y down */
+    f32x x, y;            /* pixel centre in window coordinates, y down; of dead lanes perhaps outside the target */
     f32x depth;           /* 0…1; for full-screen draws the far plane, 1 */
     maskx live;           /* covered lanes that passed the early depth test; others are helpers for derivatives */
     maskx front;          /* front face; lanes may belong to different triangles of the draw, quads never do */
