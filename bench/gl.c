@@ -80,7 +80,8 @@ const char *gl_renderer(const gl *context) { return context->renderer; }
 
 static amb_status compile(GLenum stage, const char *source, GLuint *out, amb_error *error)
 {
-    static const char *const head = "#version 320 es\nprecision highp float; precision highp int; precision highp "
+    static const char *const head = "#version 320 es\n#extension GL_EXT_blend_func_extended : enable\nprecision highp "
+                                    "float; precision highp int; precision highp "
                                     "sampler2D; precision highp samplerCube;\n";
     const char *parts[2] = {head, source};
     GLuint shader = glCreateShader(stage);

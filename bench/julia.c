@@ -124,7 +124,12 @@ static amb_status run(void *state, const amb_context *context, amb_error *error)
             return status;
         b->loaded_count++;
     }
-    amb_scene_job job = {context, b->params, moment, b->width, b->height, b->frame};
+    amb_scene_job job = {.context = context,
+                         .params = b->params,
+                         .time = moment,
+                         .width = b->width,
+                         .height = b->height,
+                         .frame = b->frame};
     return b->loaded[i].scene->frame(b->loaded[i].state, &job, error);
 }
 

@@ -33,4 +33,7 @@ amb_status canvas_begin(const amb_scene_job *job, const amb_aov *aovs, size_t ao
 amb_status canvas_finish(const amb_scene_job *job, const amb_aov *aovs, amb_canvas *canvas, amb_status status,
                          amb_error *error);
 
+/* Adds one pass's to the job's, where those are wanted: for scenes with passes of their own. */
+void canvas_add_stats(const amb_scene_job *job, const amb_pass_stats *stats);
+
 #endif

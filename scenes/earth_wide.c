@@ -66,8 +66,8 @@ static f32x under_clouds(const earth_uniforms *u, const planet_point *p, f32x n_
     f32x way = (u->cloud_shell - 1.0f) / f_max(n_dot_l, f_set(0.12f));
     v3x above = v3x_add(p->world, v3x_scale(v3x_splat(view->to_sun), way));
     v2x uv = planet_uv(v3x_normalize(planet_to_own(view, above)));
-    v4x cover = amb_sample_2d_grad(u->state->cloud_relief, &planet_sampler, uv, p->uv_dx, p->uv_dy);
-    return 1.0f - cover.w * (u->params->cloud_shadow * u->params->clouds);
+    f32x cover = planet_map_plain(u->state->cloud_relief, p, uv).w;
+    return 1.0f - cover * (u->params->cloud_shadow * u->params->clouds);
 }
 
 static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
@@ -77,30 +77,37 @@ static void earth_ground(const amb_fs_in *in, amb_fs_out *out)
     const planet_varyings *v = in->varyings;
     const planet_view *view = &u->air.view;
     planet_point p = planet_point_of(view, v->world);
-    v3x to_sun = v3x_splat(view->to_sun);
+    v3x to_sun = v3x_splat(view->to_sun), none = v3x_splat((v3){0, 0, 0});
 
-    f32x height = planet_map(u->state->relief, &p).w;
+    f32x height = planet_map_plain(u->state->relief, &p, p.uv).w;
     v3x eye_tangent = normal_map_to_tangent(p.to_eye, p.east, p.south, p.normal);
     p.uv = parallax_offset(p.uv, eye_tangent, height, k->parallax, 0.0f);
-    v4x ground = planet_map(u->state->ground, &p);
-    v3x albedo = v4x_xyz(ground);
-    v3x normal = planet_bumped(&p, planet_map(u->state->relief, &p), k->bump);
-
-    f32x n_dot_l = v3x_dot(normal, to_sun), smooth_n_dot_l = v3x_dot(p.normal, to_sun);
-    f32x lit = diffuse_wrapped(n_dot_l, k->wrap) * f_smoothstep(f_set(-0.12f), f_set(0.05f), smooth_n_dot_l);
-    v3x sunlight = v3x_scale(v3x_mul(v3x_splat(view->sun_rgb), planet_sunlight_at_ground(&u->air.air, smooth_n_dot_l)),
-                             under_clouds(u, &p, smooth_n_dot_l));
-    v3x day = v3x_mul(v3x_scale(albedo, lit), sunlight);
-    v3x night = v3x_scale(v4x_xyz(planet_map(u->state->night, &p)), diffuse_night(smooth_n_dot_l) * k->night);
-    f32x highlight = specular_blinn_phong(p.normal, to_sun, p.to_eye, k->gloss_exponent) * ground.w * k->gloss;
-    v3x gloss = v3x_scale(sunlight, highlight);
+    f32x facing = v3x_dot(p.normal, to_sun), lit = f_set(0.0f), shine = f_set(0.0f);
+    v3x albedo = none, normal = p.normal, light = none, gloss = none, night = none;
+    maskx is_day = facing > -0.12f; /* elsewhere light and gloss are 0, and the ground is dark */
+    if (m_any(is_day) || view->attachments > 1 || view->show != PLANET_SHOW_BEAUTY) {
+        v4x ground = planet_map(u->state->ground, &p);
+        albedo = v4x_xyz(ground);
+        normal = planet_bumped(&p, planet_map(u->state->relief, &p), k->bump);
+        lit = diffuse_wrapped(v3x_dot(normal, to_sun), k->wrap) * f_smoothstep(f_set(-0.12f), f_set(0.05f), facing);
+        shine = specular_blinn_phong(p.normal, to_sun, p.to_eye, k->gloss_exponent) * ground.w * k->gloss;
+    }
+    if (m_any(is_day)) {
+        v3x sunlight = v3x_mul(v3x_splat(view->sun_rgb), planet_sunlight_at_ground(&u->air.air, facing));
+        sunlight = v3x_scale(sunlight, under_clouds(u, &p, facing));
+        light = v3x_scale(sunlight, lit);
+        gloss = v3x_scale(sunlight, shine);
+    }
+    if (m_any(facing < 0.0f)) /* elsewhere cities are dark */
+        night = v3x_scale(v4x_xyz(planet_map_plain(u->state->night, &p, p.uv)), diffuse_night(facing) * k->night);
+    v3x day = v3x_mul(albedo, light);
 
     planet_put_surface(view, out, &p, normal, albedo, 1.0f);
-    planet_put(view, out, PLANET_LIGHT, v3x_scale(sunlight, lit));
+    planet_put(view, out, PLANET_LIGHT, light);
     planet_put(view, out, EARTH_DAY, day);
     planet_put(view, out, EARTH_NIGHT, night);
     planet_put(view, out, EARTH_GLOSS, gloss);
-    out->color[0] = planet_shown(view, v3x_add(v3x_add(day, night), gloss), albedo, normal, v3x_scale(sunlight, lit));
+    out->color[0] = planet_shown(view, v3x_add(v3x_add(day, night), gloss), albedo, normal, light);
 }
 
 /* Their alpha is faded by a view-aligned ring, so that they do not cut into the sky dome. */
@@ -111,13 +118,15 @@ static void earth_clouds(const amb_fs_in *in, amb_fs_out *out)
     const planet_view *view = &u->air.view;
     planet_point p = planet_point_of(view, v->world);
     v4x map = planet_map(u->state->cloud_relief, &p);
+    f32x ring = view_aligned_ring(v3x_dot(p.normal, p.to_eye), u->params->cloud_ring);
+    f32x alpha = f_saturate(map.w - ring) * u->params->clouds;
+    if (!m_any(alpha > 0.0f))
+        return; /* colour 0, alpha 0: nothing is blended */
     v3x normal = planet_bumped(&p, map, u->params->cloud_bump);
     f32x smooth_n_dot_l = v3x_dot(p.normal, v3x_splat(view->to_sun));
     f32x lit = diffuse_wrapped(v3x_dot(normal, v3x_splat(view->to_sun)), 0.15f) *
                f_smoothstep(f_set(-0.14f), f_set(0.10f), smooth_n_dot_l);
     v3x light = v3x_mul(v3x_splat(view->sun_rgb), planet_sunlight_at_ground(&u->air.air, smooth_n_dot_l));
-    f32x ring = view_aligned_ring(v3x_dot(p.normal, p.to_eye), u->params->cloud_ring);
-    f32x alpha = f_saturate(map.w - ring) * u->params->clouds;
     out->color[0] = v4x_of3(v3x_scale(light, lit * 0.92f), alpha);
 }
 

@@ -1,5 +1,6 @@
 /* Scene julia: a quaternion Julia set, sphere traced inside its bounding ball, lit by HDR environments (seed, "Julia
  * sets"; after the demo "kindernoiser" by rgba, 2007). */
+#include "scenes/canvas.h"
 #include "scenes/julia.h"
 
 #include <ambiance/march.h>
@@ -485,8 +486,10 @@ static amb_status julia_frame(const void *state, const amb_scene_job *job, amb_e
 {
     julia_uniforms u = {.params = *(const julia_params *)job->params};
     amb_pass *pass = NULL;
+    amb_pass_stats stats = {0};
     fill_uniforms(&u, state, job);
     amb_target target = choose_targets(&u, job->frame);
+    target.time_stages = job->stats != NULL;
     julia_tiles coarse = make_tiles(&u, NULL, JULIA_COARSE_TILE, job), fine = make_tiles(&u, &coarse, JULIA_TILE, job);
     size_t coarse_count = (size_t)coarse.across * (size_t)coarse.down,
            fine_count = (size_t)fine.across * (size_t)fine.down;
@@ -511,7 +514,8 @@ static amb_status julia_frame(const void *state, const amb_scene_job *job, amb_e
                      .writes_depth = true};
     status = amb_pass_draw(pass, &draw, error);
     if (status == AMB_OK)
-        status = amb_pass_finish(&pass, NULL, error);
+        status = amb_pass_finish(&pass, &stats, error);
+    canvas_add_stats(job, &stats);
 done:
     amb_pass_close(&pass);
     free(memory);

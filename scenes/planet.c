@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { SPHERE_RINGS = 192, SPHERE_SEGMENTS = 384 };
+enum { SPHERE_RINGS = 96, SPHERE_SEGMENTS = 192 };
 
 const char *const planet_show_names[] = {"beauty", "albedo", "normals", "light", "attenuation", "scattering", NULL};
 
@@ -254,6 +254,7 @@ planet_view planet_view_of(const planet_state *state, const planet_params *param
     for (int i = 0; i < 3; i++)
         view.axis[i] =
             turned_axis(params->tilt * degree, turn, (v3){(float)(i == 0), (float)(i == 1), (float)(i == 2)});
+    view.attachments = canvas->count;
     memcpy(view.slot, canvas->slot, sizeof view.slot);
     return view;
 }

@@ -125,6 +125,7 @@ typedef struct planet_view {
     float sample_angle;     /* radians from one sample to the next in the middle of the picture */
     float star_radius;      /* samples at which a point has fallen to 1/e */
     int slot[CANVAS_MAX_AOVS];
+    int attachments; /* colour and wanted AOVs */
 } planet_view;
 
 /* A flight around one body. */

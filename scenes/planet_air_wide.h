@@ -89,7 +89,7 @@ static const char *const planet_air_only[] = {"both", "rayleigh", "mie", NULL};
             "scattering of molecules or aerosols alone"                                                                  \
     }
 
-static amb_atmosphere planet_atmosphere(const planet_air_params *p, v3 sun_rgb)
+AMB_INLINE amb_atmosphere planet_atmosphere(const planet_air_params *p, v3 sun_rgb)
 {
     float per_length = 1.0f / p->scale_height;
     amb_atmosphere air = {.radius = 1.0f,
@@ -127,19 +127,28 @@ AMB_INLINE atmosphere_light planet_air_to(const planet_air *u, v3x world)
     return atmosphere_along(&u->air, eye, direction, near, far, u->view.to_sun);
 }
 
-static void planet_air_attenuate(const amb_fs_in *in, amb_fs_out *out)
+AMB_INLINE void planet_air_attenuate(const amb_fs_in *in, amb_fs_out *out)
 {
     const planet_varyings *v = in->varyings;
     out->color[0] = v4x_of3(planet_air_to(in->uniforms, v->world).transmit, f_set(1.0f));
 }
-static void planet_air_scatter(const amb_fs_in *in, amb_fs_out *out)
+AMB_INLINE void planet_air_scatter(const amb_fs_in *in, amb_fs_out *out)
 {
     const planet_air *u = in->uniforms;
     const planet_varyings *v = in->varyings;
     v3x light = planet_air_to(u, v->world).in_scatter;
     out->color[0] = v4x_of3(v3x_scale(light, f_set(u->ground_gain)), f_set(0.0f));
 }
-static void planet_air_dome(const amb_fs_in *in, amb_fs_out *out)
+/* Both at once: the second colour is what multiplies the target. */
+AMB_INLINE void planet_air_before_ground(const amb_fs_in *in, amb_fs_out *out)
+{
+    const planet_air *u = in->uniforms;
+    const planet_varyings *v = in->varyings;
+    atmosphere_light light = planet_air_to(u, v->world);
+    out->color[0] = v4x_of3(v3x_scale(light.in_scatter, f_set(u->ground_gain)), f_set(0.0f));
+    out->color[1] = v4x_of3(light.transmit, f_set(1.0f));
+}
+AMB_INLINE void planet_air_dome(const amb_fs_in *in, amb_fs_out *out)
 {
     const planet_air *u = in->uniforms;
     const planet_varyings *v = in->varyings;
@@ -147,33 +156,51 @@ static void planet_air_dome(const amb_fs_in *in, amb_fs_out *out)
     out->color[0] = v4x_of3(v3x_scale(light, f_set(u->dome_gain)), f_set(0.0f));
 }
 
-/* Records the three draws, or the one that the view shows alone; call it after everything on the planet. */
-static amb_status planet_air_draw(amb_pass *pass, planet_air *u, amb_error *error)
+/* The air before the ground: a multiplicative and an additive sphere in one draw where the pass has a single attachment
+ * (the only one that two colours can go to), else in two. The result is the same bit by bit. */
+AMB_INLINE amb_status planet_air_before_draw(amb_pass *pass, const planet_air *u, amb_error *error)
 {
-    u->view.shell = 1.0f;
+    int show = u->view.show;
+    bool both = show == PLANET_SHOW_BEAUTY;
     amb_draw dim = planet_shell_draw("air, dimming", planet_vertex, planet_air_attenuate, &u->view, sizeof *u);
     dim.depth_compare = AMB_ALWAYS;
     dim.depth_write_off = true;
     dim.targets_off = ~1u;
     dim.blend[0] = AMB_BLEND_MULTIPLY;
-    amb_draw scatter = dim;
+    amb_draw scatter = dim, before = dim;
     scatter.label = "air, scattering";
     scatter.fragment = planet_air_scatter;
     scatter.blend[0] = AMB_BLEND_ADD;
-    int show = u->view.show;
-    amb_status status = AMB_OK;
-    if (show == PLANET_SHOW_BEAUTY || show == PLANET_SHOW_ATTENUATION)
-        status = amb_pass_draw(pass, &dim, error);
-    if (status != AMB_OK || (show != PLANET_SHOW_BEAUTY && show != PLANET_SHOW_SCATTERING))
+    before.label = "air before the ground";
+    before.fragment = planet_air_before_ground;
+    before.blend[0] = AMB_BLEND_EQUATION;
+    before.equation[0] = (amb_blend_equation){.color_source = AMB_FACTOR_ONE,
+                                              .color_target = AMB_FACTOR_SECOND,
+                                              .alpha_source = AMB_FACTOR_ONE,
+                                              .alpha_target = AMB_FACTOR_ONE};
+    if (both && u->view.attachments == 1)
+        return amb_pass_draw(pass, &before, error);
+    amb_status status = both || show == PLANET_SHOW_ATTENUATION ? amb_pass_draw(pass, &dim, error) : AMB_OK;
+    if (status == AMB_OK && (both || show == PLANET_SHOW_SCATTERING))
+        status = amb_pass_draw(pass, &scatter, error);
+    return status;
+}
+
+/* Records the air, or the part that the view shows alone; call it after everything on the planet. */
+AMB_INLINE amb_status planet_air_draw(amb_pass *pass, planet_air *u, amb_error *error)
+{
+    u->view.shell = 1.0f;
+    amb_status status = planet_air_before_draw(pass, u, error);
+    if (status != AMB_OK || (u->view.show != PLANET_SHOW_BEAUTY && u->view.show != PLANET_SHOW_SCATTERING))
         return status;
-    status = amb_pass_draw(pass, &scatter, error);
     u->view.shell = u->air.top;
-    amb_draw dome = scatter;
-    dome.label = "sky dome";
-    dome.fragment = planet_air_dome;
+    amb_draw dome = planet_shell_draw("sky dome", planet_vertex, planet_air_dome, &u->view, sizeof *u);
     dome.cull = AMB_CULL_FRONT;
     dome.depth_compare = AMB_LESS;
-    return status == AMB_OK ? amb_pass_draw(pass, &dome, error) : status;
+    dome.depth_write_off = true;
+    dome.targets_off = ~1u;
+    dome.blend[0] = AMB_BLEND_ADD;
+    return amb_pass_draw(pass, &dome, error);
 }
 
 #endif

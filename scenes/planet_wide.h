@@ -85,6 +85,9 @@ AMB_INLINE planet_point planet_point_of(const planet_view *view, v3x world)
 static const amb_sampler planet_sampler = {
     .filter = AMB_TRILINEAR, .wrap = {AMB_REPEAT, AMB_CLAMP, AMB_CLAMP}, .max_anisotropy = 4};
 
+/* For maps whose detail at grazing views is not missed: one probe a look-up. */
+static const amb_sampler planet_plain_sampler = {.filter = AMB_TRILINEAR, .wrap = {AMB_REPEAT, AMB_CLAMP, AMB_CLAMP}};
+
 /* A map at the point, moved by `offset` in u and v. */
 AMB_INLINE v4x planet_map_at(const amb_texture *map, const planet_point *p, v2x offset)
 {
@@ -93,6 +96,11 @@ AMB_INLINE v4x planet_map_at(const amb_texture *map, const planet_point *p, v2x 
 AMB_INLINE v4x planet_map(const amb_texture *map, const planet_point *p)
 {
     return amb_sample_2d_grad(map, &planet_sampler, p->uv, p->uv_dx, p->uv_dy);
+}
+
+AMB_INLINE v4x planet_map_plain(const amb_texture *map, const planet_point *p, v2x uv)
+{
+    return amb_sample_2d_grad(map, &planet_plain_sampler, uv, p->uv_dx, p->uv_dy);
 }
 
 /* A coded tangent-space normal, brought to the world. */
@@ -158,7 +166,9 @@ AMB_INLINE void planet_background(const amb_fs_in *in, amb_fs_out *out)
 #else
     p.uv_dx = p.uv_dy = (v2x){0.0f, 0.0f};
 #endif
-    v3x light = v3x_scale(v4x_xyz(planet_map(view->stars, &p)), f_set(view->star_gain));
+    v3x light = v3x_splat((v3){0, 0, 0});
+    if (view->star_gain > 0.0f)
+        light = v3x_scale(v4x_xyz(planet_map(view->stars, &p)), f_set(view->star_gain));
     if (view->sun_size < 1.0f) {
         f32x cosine = v3x_dot(d, v3x_splat(view->to_sun));
         f32x depth = f_saturate((cosine - view->sun_size) * (1.0f / (1.0f - view->sun_size)));

@@ -8,6 +8,7 @@
 #include <ambiance/context.h>
 #include <ambiance/frame.h>
 #include <ambiance/param.h>
+#include <ambiance/raster.h>
 
 /* An output besides colour. Shared names and meanings: depth (1: 0…1), position (3: world), normal (3: world, unit),
  * albedo (3: linear), id (1: object number, 0 = background); a scene adds its own components. */
@@ -19,10 +20,11 @@ typedef struct amb_aov {
 
 typedef struct amb_scene_job {
     const amb_context *context;
-    const void *params; /* the scene's parameter struct, filled */
-    double time;        /* seconds, any finite value */
-    int width, height;  /* pixels */
-    amb_frame *frame;   /* "color" and every requested AOV are there, zeroed, to be filled */
+    const void *params;    /* the scene's parameter struct, filled */
+    double time;           /* seconds, any finite value */
+    int width, height;     /* pixels */
+    amb_frame *frame;      /* "color" and every requested AOV are there, zeroed, to be filled */
+    amb_pass_stats *stats; /* NULL, or where the frame's passes add their counts and stages' ticks */
 } amb_scene_job;
 
 typedef struct amb_scene {
