@@ -14,7 +14,10 @@ typedef struct emission {
     uint32_t cut[AMB_MAX_GEOMETRY_VERTICES + 1]; /* bit of a lane: a strip of its ends before this vertex */
 } emission;
 
-static void store_lanes(float *at, f32x value, maskx live) { f_store(at, f_sel(live, value, f_load(at))); }
+static void store_lanes(float *at, f32x value, maskx live)
+{
+    f_store(at, m_all(live) ? value : f_sel(live, value, f_load(at)));
+}
 
 static void emit_vertex(amb_gs_out *out, maskx live)
 {

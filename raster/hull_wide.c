@@ -1,5 +1,6 @@
 /* The hull stage: patches are shaded AMB_LANES at a time; their factors are clamped, and what each patch will come to
  * is counted, so that patches.c can cut chunks of bounded size. */
+#include "raster/factors.h"
 #include "raster/internal.h"
 
 #define raster_hull WIDE(raster_hull)
@@ -33,25 +34,21 @@ static uint32_t gather_corners(const amb_pass *pass, const raster_draw *draw, ui
 static void keep_factors(amb_pass *pass, const amb_tessellation *t, uint32_t first, const amb_hs_out *out,
                          uint32_t valid, uint32_t live, raster_scratch *scratch)
 {
-    float edge[4][AMB_LANES], inside[2][AMB_LANES];
-    for (int i = 0; i < 4; i++)
-        f_store(edge[i], out->edge[i]);
-    for (int i = 0; i < 2; i++)
-        f_store(inside[i], out->inside[i]);
+    const factors_x f = clamp_factors(t->shape, t->partitioning, out->edge, out->inside);
+    int32_t factor[6][AMB_LANES], primitives[AMB_LANES];
+    i32x points, triangles;
+    size_factors(t->shape, t->partitioning, &f, &points, &triangles);
+    const maskx drawn = (f.edge[0] != 0) & m_from_bits(valid);
+    i_store(primitives, i_sel(drawn, t->points ? points : triangles, i_set(0)));
+    for (int i = 0; i < 6; i++)
+        i_store(factor[i], i < 4 ? f.edge[i] : f.inside[i - 4]);
     for (uint32_t lane = 0; lane < live; lane++) {
-        raster_factors *f = &pass->patches.factors[first + lane];
-        uint32_t *primitives = &pass->patches.primitives[first + lane];
-        *f = raster_clamp_factors(t->shape, t->partitioning,
-                                  (float[4]){edge[0][lane], edge[1][lane], edge[2][lane], edge[3][lane]},
-                                  (float[2]){inside[0][lane], inside[1][lane]});
-        *primitives = 0;
-        if (f->edge[0] == 0 || !(valid >> lane & 1u)) {
-            scratch->stats.patches_culled++;
-            continue;
-        }
-        raster_pattern_size size = raster_size_pattern(t->shape, t->partitioning, f);
-        *primitives = t->points ? size.points : size.triangles;
+        raster_factors *kept = &pass->patches.factors[first + lane];
+        for (int i = 0; i < 6; i++)
+            *(i < 4 ? &kept->edge[i] : &kept->inside[i - 4]) = factor[i][lane];
+        pass->patches.primitives[first + lane] = (uint32_t)primitives[lane];
     }
+    scratch->stats.patches_culled += live - (uint64_t)__builtin_popcount(m_bits(drawn));
 }
 
 /* `count` patches from `first` of the window on, a multiple of the lanes. */

@@ -2,6 +2,7 @@
  * known how finely each is cut, the window is divided into chunks of bounded size; a patch too large for one continues
  * in the next. Chunks collect their points and corners from the patterns of tessellate.c. */
 #include "core/dispatch.h"
+#include "raster/clock.h"
 #include "raster/internal.h"
 
 #include <stdlib.h>
@@ -59,8 +60,11 @@ static void hull_job(void *user, int index, int thread)
 {
     amb_pass *pass = user;
     const uint32_t first = (uint32_t)index * RASTER_PATCH_GROUP, left = pass->patches.count - first;
+    const bool timed = pass->target.time_stages;
+    const uint64_t lap = raster_start(timed);
     AMB_DISPATCH(amb_context_isa(pass->context), raster_hull)
     (pass, pass->patches.draw, first, left < RASTER_PATCH_GROUP ? left : RASTER_PATCH_GROUP, &pass->scratch[thread]);
+    raster_lap(timed, &pass->scratch[thread].stats, AMB_STAGE_VERTICES, lap);
 }
 
 /* Whole patches fill a chunk as long as they fit; one too large for a chunk of its own is divided. */
@@ -136,9 +140,9 @@ static void collect_whole(raster_scratch *scratch, const raster_pattern *pattern
                           bool clockwise)
 {
     const uint32_t base = scratch->unique_count, turn = clockwise ? 1 : 0;
-    for (uint32_t i = 0; i < pattern->size.points; i++)
+    for (uint32_t i = 0; i < (uint32_t)pattern->size.points; i++)
         add_point(scratch, pattern, i, patch);
-    for (uint32_t i = 0; i < pattern->size.triangles; i++) {
+    for (uint32_t i = 0; i < (uint32_t)pattern->size.triangles; i++) {
         const uint16_t *corner = pattern->corner + (size_t)3 * i;
         add_corners(scratch, base + corner[0], base + corner[1 + turn], base + corner[2 - turn], number);
     }
@@ -148,7 +152,7 @@ static void collect_whole(raster_scratch *scratch, const raster_pattern *pattern
 static void collect_part(raster_scratch *scratch, const raster_pattern *pattern, uint32_t first, uint32_t count,
                          uint32_t patch, uint32_t number, bool clockwise)
 {
-    memset(scratch->seen, 0, pattern->size.points * sizeof *scratch->seen);
+    memset(scratch->seen, 0, (size_t)pattern->size.points * sizeof *scratch->seen);
     for (uint32_t i = first; i < first + count; i++) {
         const uint16_t *corner = pattern->corner + (size_t)3 * i;
         uint32_t local[3];

@@ -2,50 +2,37 @@
  * edge's own points; the inner ones those of the inside factors, one segment less at either end from ring to ring,
  * until a triangle, a strip of quads, a row or a point is left. */
 #include "raster/tessellate.h"
+#include "raster/factors.h"
 #include "raster/internal.h"
 
 #include <stdlib.h>
 
-#define ONE RASTER_FACTOR_ONE
+#define ONE ((uint32_t)RASTER_FACTOR_ONE)
 #define HALF (ONE / 2)
 
-/* ---- factors ---------------------------------------------------------------------------------------------------- */
-
-static float bounded(float factor, float least, float most)
+static factors_x lanes_of(const raster_factors *f)
 {
-    return amb_s_min(amb_s_max(factor, least), most); /* NaN: the least */
-}
-
-/* Rounded half to even, as Direct3D converts to fixed point. */
-static uint32_t to_fixed(float factor) { return (uint32_t)f_round(factor * (float)ONE); }
-
-static float whole(amb_partitioning partitioning, float factor)
-{
-    return partitioning == AMB_INTEGER ? f_ceil(factor) : factor;
+    factors_x x;
+    memcpy(&x, f, sizeof x); /* one lane */
+    return x;
 }
 
 raster_factors raster_clamp_factors(amb_patch_shape shape, amb_partitioning partitioning, const float edge[4],
                                     const float inside[2])
 {
-    const int edges = shape == AMB_QUAD ? 4 : 3, insides = shape == AMB_QUAD ? 2 : 1;
-    const float most = partitioning == AMB_FRACTIONAL_ODD ? 63.0f : 64.0f;
-    float least = partitioning == AMB_FRACTIONAL_EVEN ? 2.0f : 1.0f;
-    raster_factors f = {{0}, {0}};
-    bool frame = false; /* is any factor above one? Then a ring must lie between the edges and the inside */
-    for (int i = 0; i < edges; i++)
-        if (!(edge[i] > 0.0f))
-            return f;
-    for (int i = 0; i < edges; i++) {
-        f.edge[i] = to_fixed(whole(partitioning, bounded(edge[i], least, most)));
-        frame |= f.edge[i] > ONE;
-    }
-    for (int i = 0; i < insides; i++)
-        frame |= to_fixed(bounded(inside[i], least, most)) > ONE;
-    if (partitioning == AMB_FRACTIONAL_ODD && frame)
-        least += 1.0f / (float)ONE;
-    for (int i = 0; i < insides; i++)
-        f.inside[i] = to_fixed(whole(partitioning, bounded(inside[i], least, most)));
+    const factors_x x = clamp_factors(shape, partitioning, edge, inside);
+    raster_factors f;
+    memcpy(&f, &x, sizeof f);
     return f;
+}
+
+raster_pattern_size raster_size_pattern(amb_patch_shape shape, amb_partitioning partitioning,
+                                        const raster_factors *factors)
+{
+    const factors_x f = lanes_of(factors);
+    raster_pattern_size size;
+    size_factors(shape, partitioning, &f, &size.points, &size.triangles);
+    return size;
 }
 
 /* ---- points on a line ------------------------------------------------------------------------------------------- */
@@ -101,59 +88,34 @@ static uint32_t place(const spacing *s, uint32_t n)
     return position;
 }
 
-/* The spacings of a patch. */
+/* The segments of a patch. */
 typedef struct layout {
     amb_patch_shape shape;
+    amb_partitioning partitioning;
     int sides;
     bool least; /* all factors are one: no inside at all */
-    spacing edge[4], inside[2];
+    uint32_t edge[4], inside[2];
 } layout;
 
-static layout layout_of(amb_patch_shape shape, amb_partitioning partitioning, const raster_factors *f)
+static layout layout_of(amb_patch_shape shape, amb_partitioning partitioning, const raster_factors *factors)
 {
-    layout l = {.shape = shape, .sides = shape == AMB_QUAD ? 4 : 3, .least = true};
-    const bool integer = partitioning == AMB_INTEGER, odd = partitioning == AMB_FRACTIONAL_ODD;
-    for (int i = 0; i < l.sides; i++) {
-        l.edge[i] = spacing_of(f->edge[i], integer ? (f->edge[i] / ONE & 1u) != 0 : odd);
-        l.least &= f->edge[i] == ONE;
-    }
-    for (int i = 0; i < (shape == AMB_QUAD ? 2 : 1); i++) {
-        l.inside[i] = spacing_of(f->inside[i], integer ? (f->inside[i] / ONE & 1u) != 0 && f->inside[i] != ONE : odd);
-        l.least &= f->inside[i] == ONE;
-    }
+    const factors_x f = lanes_of(factors);
+    layout l = {shape, partitioning, factor_edges(shape), factors_are_one(shape, &f) != 0, {0}, {0}};
+    for (int i = 0; i < l.sides; i++)
+        l.edge[i] = (uint32_t)factor_segments(f.edge[i], partitioning, false);
+    for (int i = 0; i < factor_insides(shape); i++)
+        l.inside[i] = (uint32_t)factor_segments(f.inside[i], partitioning, true);
     return l;
 }
 
-static raster_pattern_size size_of(const layout *l)
-{
-    raster_pattern_size size = {0, 0};
-    if (l->least)
-        return (raster_pattern_size){(uint32_t)l->sides, (uint32_t)l->sides - 2};
-    for (int i = 0; i < l->sides; i++) {
-        uint32_t inner = l->inside[l->shape == AMB_QUAD ? ~i & 1 : 0].segments - 2;
-        size.points += l->edge[i].segments;
-        size.triangles += l->edge[i].segments + inner;
-    }
-    if (l->shape == AMB_QUAD) {
-        uint32_t columns = l->inside[0].segments - 2, rows = l->inside[1].segments - 2;
-        size.points += (columns + 1) * (rows + 1);
-        size.triangles += 2 * columns * rows;
-    } else {
-        uint32_t side = l->inside[0].segments - 2, half = (side + 1) / 2;
-        size.points += side & 1u ? 3 * half * half : 3 * half * (half + 1) + 1;
-        size.triangles += 3 * side * side / 2;
-    }
-    return size;
-}
-
-raster_pattern_size raster_size_pattern(amb_patch_shape shape, amb_partitioning partitioning,
-                                        const raster_factors *factors)
-{
-    const layout l = layout_of(shape, partitioning, factors);
-    return size_of(&l);
-}
-
 /* ---- points ----------------------------------------------------------------------------------------------------- */
+
+/* The spacings of an inside or an edge that has so many segments. */
+static spacing spacing_in(const layout *l, int32_t factor, uint32_t segments)
+{
+    return spacing_of((uint32_t)factor,
+                      l->partitioning == AMB_INTEGER ? (segments & 1u) != 0 : l->partitioning == AMB_FRACTIONAL_ODD);
+}
 
 static void add_point(raster_pattern *p, uint32_t u, uint32_t v)
 {
@@ -163,12 +125,12 @@ static void add_point(raster_pattern *p, uint32_t u, uint32_t v)
 
 /* The outer ring goes round with positive turn: down the edge u = 0, along v = 0, then back. Each edge leaves its last
  * point to the next. */
-static void outer_points(raster_pattern *p, const layout *l)
+static void outer_points(raster_pattern *p, const layout *l, const raster_factors *f)
 {
     for (int side = 0; side < l->sides; side++) {
-        const spacing *s = &l->edge[side];
-        for (uint32_t n = 0; n < s->segments; n++) {
-            uint32_t at = place(s, n);
+        const spacing s = spacing_in(l, f->edge[side], l->edge[side]);
+        for (uint32_t n = 0; n < s.segments; n++) {
+            uint32_t at = place(&s, n);
             if (side == 0)
                 add_point(p, 0, ONE - at);
             else if (side == 1)
@@ -183,14 +145,14 @@ static void outer_points(raster_pattern *p, const layout *l)
     }
 }
 
-static void quad_ring_points(raster_pattern *p, const layout *l, uint32_t ring)
+static void quad_ring_points(raster_pattern *p, const spacing inside[2], uint32_t ring)
 {
     uint32_t u[65], v[65];
-    const uint32_t columns = l->inside[0].segments - 2 * ring, rows = l->inside[1].segments - 2 * ring;
+    const uint32_t columns = inside[0].segments - 2 * ring, rows = inside[1].segments - 2 * ring;
     for (uint32_t n = 0; n <= columns; n++)
-        u[n] = place(&l->inside[0], ring + n);
+        u[n] = place(&inside[0], ring + n);
     for (uint32_t n = 0; n <= rows; n++)
-        v[n] = place(&l->inside[1], ring + n);
+        v[n] = place(&inside[1], ring + n);
     if (columns == 0 || rows == 0) { /* a row of points, or one */
         for (uint32_t n = 0; n <= columns && columns > 0; n++)
             add_point(p, u[n], v[0]);
@@ -208,9 +170,8 @@ static void quad_ring_points(raster_pattern *p, const layout *l, uint32_t ring)
         add_point(p, u[columns - n], v[rows]);
 }
 
-static void triangle_ring_points(raster_pattern *p, const layout *l, uint32_t ring)
+static void triangle_ring_points(raster_pattern *p, const spacing *s, uint32_t ring)
 {
-    const spacing *s = &l->inside[0];
     const uint32_t side = s->segments - 2 * ring;
     if (side == 0) {
         add_point(p, ONE / 3, ONE / 3);
@@ -231,19 +192,24 @@ static void triangle_ring_points(raster_pattern *p, const layout *l, uint32_t ri
 
 static uint32_t last_ring(const layout *l)
 {
-    uint32_t columns = l->inside[0].segments, rows = l->shape == AMB_QUAD ? l->inside[1].segments : columns;
+    uint32_t columns = l->inside[0], rows = l->shape == AMB_QUAD ? l->inside[1] : columns;
     return (columns < rows ? columns : rows) / 2;
 }
 
-static void make_points(raster_pattern *p, const layout *l)
+static void make_points(raster_pattern *p, const layout *l, const raster_factors *f)
 {
+    spacing inside[2];
     p->size.points = 0;
-    outer_points(p, l);
-    for (uint32_t ring = 1; !l->least && ring <= last_ring(l); ring++)
+    outer_points(p, l, f);
+    if (l->least)
+        return;
+    for (int i = 0; i < factor_insides(l->shape); i++)
+        inside[i] = spacing_in(l, f->inside[i], l->inside[i]);
+    for (uint32_t ring = 1; ring <= last_ring(l); ring++)
         if (l->shape == AMB_QUAD)
-            quad_ring_points(p, l, ring);
+            quad_ring_points(p, inside, ring);
         else
-            triangle_ring_points(p, l, ring);
+            triangle_ring_points(p, inside, ring);
 }
 
 /* ---- triangles -------------------------------------------------------------------------------------------------- */
@@ -259,9 +225,9 @@ static ring ring_of(const layout *l, uint32_t number, uint32_t base)
 {
     ring r = {.base = base};
     for (int side = 0; side < l->sides; side++) {
-        const uint32_t inner = l->inside[l->shape == AMB_QUAD ? ~side & 1 : 0].segments - 2 * number;
+        const uint32_t inner = l->inside[l->shape == AMB_QUAD ? ~side & 1 : 0] - 2 * number;
         r.first[side] = r.total;
-        r.segments[side] = number == 0 ? l->edge[side].segments : inner;
+        r.segments[side] = number == 0 ? l->edge[side] : inner;
         r.total += r.segments[side];
     }
     r.row = r.segments[0] == 0 || r.segments[1] == 0;
@@ -279,7 +245,7 @@ static uint16_t at(const ring *r, uint32_t step)
 
 static void add_triangle(raster_pattern *p, uint16_t a, uint16_t b, uint16_t c)
 {
-    uint16_t *corner = p->corner + (size_t)3 * p->size.triangles++;
+    uint16_t *corner = p->corner + (size_t)3 * (size_t)p->size.triangles++;
     corner[0] = a, corner[1] = b, corner[2] = c;
 }
 
@@ -375,31 +341,31 @@ static void make_triangles(raster_pattern *p, const layout *l)
 
 /* ---- patterns --------------------------------------------------------------------------------------------------- */
 
-static uint64_t pack_segments(const layout *l, amb_partitioning partitioning)
+static uint64_t pack_segments(const layout *l)
 {
-    uint64_t key = (uint64_t)l->shape << 4 | (uint64_t)partitioning << 2 | (uint64_t)l->least << 1 | 1u;
+    uint64_t key = (uint64_t)l->shape << 4 | (uint64_t)l->partitioning << 2 | (uint64_t)l->least << 1 | 1u;
     for (int i = 0; i < l->sides; i++)
-        key = key << 7 | l->edge[i].segments;
-    for (int i = 0; i < (l->shape == AMB_QUAD ? 2 : 1); i++)
-        key = key << 7 | l->inside[i].segments;
+        key = key << 7 | l->edge[i];
+    for (int i = 0; i < factor_insides(l->shape); i++)
+        key = key << 7 | l->inside[i];
     return key;
 }
 
 static bool make_pattern(raster_pattern *p, const layout *l, uint64_t segments, const raster_factors *factors)
 {
     if (p->segments != segments) {
-        const raster_pattern_size size = size_of(l);
+        const raster_pattern_size size = raster_size_pattern(l->shape, l->partitioning, factors);
         p->segments = 0;
-        if (!raster_grow(&p->u, &p->u_capacity, size.points, sizeof *p->u) ||
-            !raster_grow(&p->v, &p->v_capacity, size.points, sizeof *p->v) ||
-            !raster_grow(&p->corner, &p->corner_capacity, (size_t)3 * size.triangles, sizeof *p->corner))
+        if (!raster_grow(&p->u, &p->u_capacity, (size_t)size.points, sizeof *p->u) ||
+            !raster_grow(&p->v, &p->v_capacity, (size_t)size.points, sizeof *p->v) ||
+            !raster_grow(&p->corner, &p->corner_capacity, (size_t)3 * (size_t)size.triangles, sizeof *p->corner))
             return false;
         make_triangles(p, l);
         p->segments = segments;
         p->factors.edge[0] = 0;
     }
     if (memcmp(&p->factors, factors, sizeof *factors) != 0)
-        make_points(p, l);
+        make_points(p, l, factors);
     p->factors = *factors;
     return true;
 }
@@ -408,7 +374,7 @@ bool raster_make_pattern(raster_pattern *pattern, amb_patch_shape shape, amb_par
                          const raster_factors *factors)
 {
     const layout l = layout_of(shape, partitioning, factors);
-    return make_pattern(pattern, &l, pack_segments(&l, partitioning), factors);
+    return make_pattern(pattern, &l, pack_segments(&l), factors);
 }
 
 void raster_free_pattern(raster_pattern *pattern)
@@ -422,8 +388,16 @@ void raster_free_pattern(raster_pattern *pattern)
 const raster_pattern *raster_find_pattern(raster_pattern_cache *cache, amb_patch_shape shape,
                                           amb_partitioning partitioning, const raster_factors *factors)
 {
+    if (cache->last && cache->shape == shape && cache->partitioning == partitioning &&
+        memcmp(&cache->last->factors, factors, sizeof *factors) == 0)
+        return cache->last;
     const layout l = layout_of(shape, partitioning, factors);
-    const uint64_t segments = pack_segments(&l, partitioning);
+    const uint64_t segments = pack_segments(&l);
     raster_pattern *p = &cache->slot[(segments * 0x9e3779b97f4a7c15u) >> 59];
-    return make_pattern(p, &l, segments, factors) ? p : NULL;
+    if (!make_pattern(p, &l, segments, factors))
+        return NULL;
+    cache->last = p;
+    cache->shape = shape;
+    cache->partitioning = partitioning;
+    return p;
 }

@@ -8,21 +8,21 @@
 
 #include <ambiance/raster.h>
 
-#define RASTER_FACTOR_ONE 65536u
+#define RASTER_FACTOR_ONE 65536
 #define RASTER_PATTERN_POINTS 4225    /* at most: 65 × 65 */
 #define RASTER_PATTERN_TRIANGLES 8192 /* at most: 2 · 64 · 64 */
 
 /* Factors after clamping (and rounding up, where they are integers), in 1/65536; edge[0] 0: the patch is culled. What
  * the domain lacks is 0. */
 typedef struct raster_factors {
-    uint32_t edge[4], inside[2];
+    int32_t edge[4], inside[2];
 } raster_factors;
 
 raster_factors raster_clamp_factors(amb_patch_shape shape, amb_partitioning partitioning, const float edge[4],
                                     const float inside[2]);
 
 typedef struct raster_pattern_size {
-    uint32_t points, triangles;
+    int32_t points, triangles;
 } raster_pattern_size;
 /* Of factors that are not culled. */
 raster_pattern_size raster_size_pattern(amb_patch_shape shape, amb_partitioning partitioning,
@@ -47,6 +47,9 @@ void raster_free_pattern(raster_pattern *pattern);
 /* A cache of patterns: a worker's own. */
 #define RASTER_PATTERN_SLOTS 32
 typedef struct raster_pattern_cache {
+    const raster_pattern *last;
+    amb_patch_shape shape; /* and what it is of */
+    amb_partitioning partitioning;
     raster_pattern slot[RASTER_PATTERN_SLOTS];
 } raster_pattern_cache;
 /* NULL when out of memory. The pattern lasts until the next call. */

@@ -66,7 +66,7 @@ static int64_t doubled_area(const raster_pattern *p, const uint16_t *c)
 {
     int64_t x[3], y[3], longest = 0;
     for (int k = 0; k < 3; k++) {
-        assert_true(c[k] < p->size.points);
+        assert_true((int)c[k] < p->size.points);
         x[k] = fixed(p->u[c[k]]), y[k] = fixed(p->v[c[k]]);
     }
     for (int k = 0; k < 3; k++) {
@@ -83,8 +83,8 @@ static void check_area(const raster_pattern *p, amb_patch_shape shape)
 {
     const int64_t whole = (shape == AMB_QUAD ? 2 : 1) * (int64_t)65536 * 65536;
     int64_t area = 0;
-    for (uint32_t i = 0; i < p->size.triangles; i++) {
-        const uint16_t *c = p->corner + (size_t)3 * i;
+    for (int32_t i = 0; i < p->size.triangles; i++) {
+        const uint16_t *c = p->corner + 3 * i;
         assert_true(c[0] != c[1] && c[1] != c[2] && c[2] != c[0]);
         area += doubled_area(p, c);
     }
@@ -97,9 +97,9 @@ static int compare_edges(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static uint32_t segments_of(uint32_t factor, amb_partitioning partitioning)
+static uint32_t segments_of(int32_t factor, amb_partitioning partitioning)
 {
-    uint32_t up = (factor + 65535) / 65536;
+    uint32_t up = ((uint32_t)factor + 65535) / 65536;
     if (partitioning == AMB_INTEGER)
         return up;
     return (up & 1u) == (partitioning == AMB_FRACTIONAL_ODD) ? up : up + 1;
@@ -111,7 +111,7 @@ static void check_topology(const raster_pattern *p, const raster_factors *f, amb
                            amb_partitioning partitioning)
 {
     static uint32_t edge[3 * RASTER_PATTERN_TRIANGLES];
-    const uint32_t edges = 3 * p->size.triangles;
+    const uint32_t edges = 3 * (uint32_t)p->size.triangles;
     uint32_t outer = 0, segments = 0;
     for (uint32_t i = 0; i < edges; i++) {
         uint32_t a = p->corner[i], b = p->corner[i % 3 == 2 ? i - 2 : i + 1];
@@ -125,7 +125,7 @@ static void check_topology(const raster_pattern *p, const raster_factors *f, amb
     for (int i = 0; i < (shape == AMB_QUAD ? 4 : 3); i++)
         segments += segments_of(f->edge[i], partitioning);
     assert_int_equal(outer, segments);
-    assert_int_equal((int)p->size.points - (int)(edges + outer) / 2 + (int)p->size.triangles, 1);
+    assert_int_equal(p->size.points - (int)(edges + outer) / 2 + p->size.triangles, 1);
 }
 
 static void patterns_cover_their_domain_once(void **state)
@@ -192,8 +192,8 @@ static void patterns_are_those_of_direct3d(void **state)
         listed_patch(n, &shape, &partitioning, &f);
         const raster_factors clamped = raster_clamp_factors(shape, partitioning, f.edge, f.inside);
         assert_true(raster_make_pattern(&p, shape, partitioning, &clamped));
-        for (uint32_t i = 0; i < p.size.triangles; i++) {
-            const uint16_t *c = p.corner + (size_t)3 * i;
+        for (int32_t i = 0; i < p.size.triangles; i++) {
+            const uint16_t *c = p.corner + 3 * i;
             hash = hash_triangle(hash, (float[3]){p.u[c[0]], p.u[c[1]], p.u[c[2]]},
                                  (float[3]){p.v[c[0]], p.v[c[1]], p.v[c[2]]});
         }
@@ -488,7 +488,7 @@ static list expand(const mesh *m, const amb_tessellation *t)
         if (f.edge[0] == 0)
             continue;
         assert_true(raster_make_pattern(&p, t->shape, t->partitioning, &f));
-        const uint32_t corners = t->points ? p.size.points : 3 * p.size.triangles;
+        const uint32_t corners = (uint32_t)(t->points ? p.size.points : 3 * p.size.triangles);
         l.vertex = realloc(l.vertex, (l.count + corners) * sizeof *l.vertex);
         assert_non_null(l.vertex);
         for (uint32_t i = 0; i < corners; i++) {
