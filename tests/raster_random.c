@@ -94,6 +94,10 @@ static void random_draw_state(random_pass *p, const raster_test_shaders *shaders
             d->index[i] = number(p, 16) == 0 ? UINT32_MAX : (uint32_t)number(p, MAX_VERTICES);
     }
     s->instances = (uint32_t)number(p, 4);
+    if (number(p, 4) == 0) {
+        static const amb_topology output[] = {AMB_TRIANGLES, AMB_LINES, AMB_POINTS};
+        s->geometry = (amb_geometry){shaders->copy, output[number(p, 3)], 1 + number(p, 12), 0};
+    }
     s->cull = (amb_cull)number(p, 3);
     s->front_clockwise = number(p, 2) != 0;
     s->wireframe = number(p, 6) == 0;
@@ -104,13 +108,16 @@ static void random_draw_state(random_pass *p, const raster_test_shaders *shaders
     random_output(p, s);
     d->uniforms = (raster_test_uniforms){.vertex = d->vertex, .offset = {0.25f, -0.125f, 0, 0}};
     d->uniforms.holes = number(p, 2) ? number(p, 5) : 0;
+    d->uniforms.step = (v4){-0.375f, 0.25f, 0, 0};
+    d->uniforms.corners = s->topology <= AMB_TRIANGLE_FAN ? 3 : s->topology <= AMB_LINE_STRIP ? 2 : 1;
+    d->uniforms.copies = number(p, 4);
     d->uniforms.targets = p->targets;
     d->uniforms.hostile = number(p, 4) == 0 ? number(p, 9) : 0;
     s->uniforms = &d->uniforms, s->uniforms_size = sizeof d->uniforms;
     s->writes_depth = !d->flat || number(p, 2);
     s->fragment = s->writes_depth ? shaders->coded_depth : number(p, 8) == 0 ? NULL : shaders->coded;
     if (s->fragment && number(p, 12) == 0)
-        s->vertex = NULL; /* the whole screen */
+        s->vertex = NULL, s->geometry.shader = NULL; /* the whole screen */
 }
 
 /* A slice of a texture at a level where it has the pass's size. */
@@ -179,7 +186,7 @@ static bool refuses_nonsense(random_pass *p, amb_pass *pass, const amb_draw *goo
 {
     amb_draw d = *good;
     int nonsense = number(p, 2) ? 1 << 20 : -1 - number(p, 256);
-    switch (number(p, 12)) {
+    switch (number(p, 15)) {
     case 0:
         d.lanes = nonsense;
         break;
@@ -212,6 +219,18 @@ static bool refuses_nonsense(random_pass *p, amb_pass *pass, const amb_draw *goo
         break;
     case 10:
         d.stencil.on = true, d.stencil.back.fail = (amb_stencil_op)nonsense;
+        break;
+    case 11:
+        d.geometry.shader = raster_test_shaders_of(AMB_ISA_V2)->copy; /* it is never run */
+        d.geometry.vertices = number(p, 2) ? 0 : AMB_MAX_GEOMETRY_VERTICES + 1;
+        break;
+    case 12:
+        d.topology = (amb_topology)nonsense;
+        d.vertex = raster_test_shaders_of(AMB_ISA_V2)->vertex;
+        break;
+    case 13:
+        d.topology = AMB_PATCHES; /* without a hull and a domain shader */
+        d.tessellation = (amb_tessellation){0};
         break;
     default:
         d.vertex = NULL, d.fragment = NULL;

@@ -299,6 +299,37 @@ static int corners_of(amb_topology topology, int n, int count, int at[3])
     return corners[topology];
 }
 
+static void truth_primitive(random_pass *p, const float clip[3][4], int corners)
+{
+    const amb_draw *s = &p->now->state;
+    float size = s->point_size > 0.0f ? s->point_size : 1.0f;
+    p->front = true;
+    if (corners == 3)
+        truth_triangle_of(p, clip);
+    else if (corners == 2)
+        truth_draw_line(clip[0], clip[1], p->width, p->height, !s->depth_clamp, truth_pixel, p);
+    else
+        truth_draw_point(clip[0], size, p->width, p->height, !s->depth_clamp, truth_pixel, p);
+}
+
+/* What the copying geometry shader makes of a primitive: strips of its corners, as far as vertices are allowed. */
+static void truth_copies(random_pass *p, const float clip[3][4], int corners)
+{
+    const raster_test_uniforms *u = &p->now->uniforms;
+    const amb_geometry *g = &p->now->state.geometry;
+    const int needed = g->output == AMB_TRIANGLES ? 3 : g->output == AMB_LINES ? 2 : 1;
+    int emitted = 0;
+    for (int c = 0; c < u->copies && c < RASTER_TEST_COPIES(p->primitive); c++) {
+        float strip[3][4];
+        for (int k = 0; k < corners && emitted < g->vertices; k++, emitted++) {
+            for (int i = 0; i < 4; i++)
+                strip[k][i] = clip[k][i] + (&u->step.x)[i] * (float)c;
+            if (k + 1 >= needed)
+                truth_primitive(p, (const float(*)[4])(strip + k + 1 - needed), needed);
+        }
+    }
+}
+
 void random_truth_draw(random_pass *p, const random_draw *d)
 {
     const amb_draw *s = &d->state;
@@ -327,14 +358,10 @@ void random_truth_draw(random_pass *p, const random_draw *d)
             }
             if (!valid)
                 continue;
-            p->front = true;
-            float size = s->point_size > 0.0f ? s->point_size : 1.0f;
-            if (corners == 3)
-                truth_triangle_of(p, (const float(*)[4])clip);
-            else if (corners == 2)
-                truth_draw_line(clip[0], clip[1], p->width, p->height, !s->depth_clamp, truth_pixel, p);
+            if (s->geometry.shader)
+                truth_copies(p, (const float(*)[4])clip, corners);
             else
-                truth_draw_point(clip[0], size, p->width, p->height, !s->depth_clamp, truth_pixel, p);
+                truth_primitive(p, (const float(*)[4])clip, corners);
         }
     }
 }

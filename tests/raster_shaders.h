@@ -19,6 +19,9 @@ typedef struct raster_test_uniforms {
     const amb_texture *texture; /* of the textured shaders, and of fetch */
     amb_sampler sampler;
     v2 ddx, ddy; /* gradients that the shader gives */
+    v4 step;     /* the copying geometry shader moves copy c by c · step in clip space */
+    int corners; /* of the primitives it gets */
+    int copies;  /* at most; RASTER_TEST_COPIES of primitive n */
     int targets; /* that the coded shaders write, at least two */
     int hostile; /* 0…8: how many of 8 of their values are of RASTER_TEST_HOSTILE instead */
     int holes;   /* the coded shaders discard fragments where (x + 2y + primitive) mod 4 is below this */
@@ -27,6 +30,7 @@ typedef struct raster_test_uniforms {
 typedef struct raster_test_shaders {
     int lanes;
     amb_vertex_shader vertex;
+    amb_geometry_shader copy;          /* each primitive several times or not at all, each a strip */
     amb_fragment_shader value;         /* target 0: value; target 1: d value.x/dx, d/dy, x, y; target 2: ids, depth */
     amb_fragment_shader one;           /* target 0: 1, value.x */
     amb_fragment_shader write_depth;   /* target 0: value; depth · uniforms.depth */
@@ -42,6 +46,7 @@ typedef struct raster_test_shaders {
 /* A small exact number of a primitive and a channel: -¼…1, without rounding. */
 #define RASTER_TEST_CODE(primitive, salt) ((float)(((primitive)*37 + (salt)*11 + 5) & 31) * 0.0390625f - 0.25f)
 
+#define RASTER_TEST_COPIES(primitive) (((primitive)*5 + 1) & 3)
 #define RASTER_TEST_HOSTILE                                               \
     {                                                                     \
         NAN, INFINITY, -INFINITY, 1e30f, -1e-40f, 1e-42f, 70000.0f, -0.0f \

@@ -73,6 +73,22 @@ static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
     out->depth = code(in->primitive, 9, u->hostile);
 }
 
+static void copy(const amb_gs_in *in, amb_gs_out *out)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    v4x *value = out->varyings;
+    for (int c = 0; c < u->copies; c++) {
+        maskx live = in->live & (RASTER_TEST_COPIES(in->primitive) > c);
+        for (int k = 0; k < u->corners; k++) {
+            const v4x *corner = in->varyings[k];
+            out->clip = v4x_add(in->clip[k], v4x_scale(v4x_splat(u->step), f_set((float)c)));
+            *value = *corner;
+            amb_emit(out, live);
+        }
+        amb_cut(out, live);
+    }
+}
+
 static void fetch(const amb_vs_in *in, amb_vs_out *out)
 {
     const raster_test_uniforms *u = in->uniforms;
@@ -116,7 +132,20 @@ static void table(const amb_fs_in *in, amb_fs_out *out)
 
 const raster_test_shaders *raster_test_shaders_get(void)
 {
-    static const raster_test_shaders shaders = {AMB_LANES,   vertex, value, one,      write_depth,   coded,
-                                                coded_depth, screen, fetch, textured, textured_cube, table};
+    static const raster_test_shaders shaders = {
+        .lanes = AMB_LANES,
+        .vertex = vertex,
+        .copy = copy,
+        .value = value,
+        .one = one,
+        .write_depth = write_depth,
+        .coded = coded,
+        .coded_depth = coded_depth,
+        .screen = screen,
+        .fetch = fetch,
+        .textured = textured,
+        .textured_cube = textured_cube,
+        .table = table,
+    };
     return &shaders;
 }
