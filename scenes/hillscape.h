@@ -208,8 +208,9 @@ typedef struct hill_textures {
 
 /* Fills the frame's light[], light_on[], waves and sky from its parameters and time. */
 void hill_lights_make(hill_frame *frame);
-/* Draws every shadow map that is wanted and fills shadow[]. */
-amb_status hill_shadows_make(const amb_context *context, hill_frame *frame, hill_textures *textures, amb_error *error);
+/* Draws every shadow map that is wanted, for a picture of `height` pixels, and fills shadow[]. */
+amb_status hill_shadows_make(const amb_context *context, int height, hill_frame *frame, hill_textures *textures,
+                             amb_error *error);
 
 /* A pass of `height` pixels that looks through a matrix; all outputs off. */
 hill_pass hill_pass_make(const hill_frame *frame, m4 world_to_clip, v3 eye, int height);

@@ -57,16 +57,7 @@ static void make_sun(hill_frame *f)
     v3 level = v3_add(v3_scale(sun, amb_s_max(to_sun.y, 0.0f)), sky);
     f->sky_light[0] = sky;
     f->sky_light[1] = v3_add(scaled_color(level, ground, 1.0f), v3_scale(sky, 0.12f));
-    v3x horizon = {f_set(0), f_set(0), f_set(0)};
-    for (int i = 0; i < 4; i++) /* the mean of four points around */
-        horizon = v3x_add(horizon, sky_horizon_rgb(&f->sky, (v3x){f_set(i == 0   ? 1.0f
-                                                                        : i == 1 ? -1.0f
-                                                                                 : 0.0f),
-                                                                  f_set(0.0f),
-                                                                  f_set(i == 2   ? 1.0f
-                                                                        : i == 3 ? -1.0f
-                                                                                 : 0.0f)}));
-    f->haze_rgb = v3_add(v3_scale(v3x_lane(horizon, 0), 0.25f * 0.62f * f->gain), v3_scale(sky, 0.25f));
+    f->haze_rgb = v3_scale(sky, 0.06f); /* of the sky above; the horizon's is added by direction */
 }
 
 void hill_lights_make(hill_frame *f)
@@ -104,7 +95,7 @@ void hill_lights_make(hill_frame *f)
     waves_at_time(&f->waves, f->time);
     float s = f_lane(f_sin(f_set(folded(f->time * (double)p->sphere_speed, 360.0) * degree)), 0);
     float c = f_lane(f_cos(f_set(folded(f->time * (double)p->sphere_speed, 360.0) * degree)), 0);
-    f->sphere_at = (v3){105.0f + 60.0f * s, 19.0f + 0.6f * p->sphere_radius, 190.0f - 60.0f * c};
+    f->sphere_at = (v3){245.0f + 55.0f * s, 12.0f + 0.6f * p->sphere_radius, 130.0f - 55.0f * c};
 }
 
 /* ---- shadow maps --------------------------------------------------------------------------------------------------
@@ -248,15 +239,20 @@ static amb_status make_cube(const shadow_maker *m, int size)
     return status;
 }
 
-amb_status hill_shadows_make(const amb_context *context, hill_frame *f, hill_textures *textures, amb_error *error)
+amb_status hill_shadows_make(const amb_context *context, int height, hill_frame *f, hill_textures *textures,
+                             amb_error *error)
 {
     static const float sun_ends[3] = {60.0f, 240.0f, 1500.0f}, fill_ends[1] = {300.0f};
     const hill_params *p = &f->p;
     shadow_maker m = {context, f, textures, error};
     amb_status status = AMB_OK;
-    int size = p->shadow_size, half = size / 2;
+    int size = 64, half;
+    while (size < 2 * height) /* small pictures need no large maps */
+        size *= 2;
+    size = size < p->shadow_size ? size : p->shadow_size;
+    half = size / 2;
     for (int i = 0; i < HILL_LIGHTS; i++)
-        f->shadow[i] = (amb_shadow){.taps = p->shadow_taps, .offset = 1.6f, .bias = 2.0e-5f};
+        f->shadow[i] = (amb_shadow){.taps = i == LIGHT_FILL && p->shadow_taps > 2 ? 2 : p->shadow_taps, .offset = 1.6f, .bias = 2.0e-5f};
     if (f->light_on[LIGHT_SUN] && p->sun_shadow)
         status = make_directional(&m, LIGHT_SUN, sun_ends, 3, size);
     if (status == AMB_OK && f->light_on[LIGHT_FILL] && p->fill_shadow)

@@ -65,18 +65,6 @@ typedef struct height_job {
     amb_image *height, *slope;
 } height_job;
 
-static void height_row(void *user, int y, int thread)
-{
-    (void)thread;
-    const height_job *job = user;
-    static const amb_sampler sampler = {.filter = AMB_BILINEAR, .wrap = {AMB_CLAMP, AMB_CLAMP, AMB_CLAMP}};
-    float *row = amb_image_row(job->height, 0, y);
-    for (int x = 0; x < job->height->width; x++) {
-        v2x uv = {((float)x + 0.5f) / (float)job->height->width, ((float)y + 0.5f) / (float)job->height->height};
-        row[x] = amb_sample_2d_lod(job->state->height, &sampler, uv, 0.0f).x;
-    }
-}
-
 /* The report's central differences, per unit of u and v. */
 static void slope_row(void *user, int y, int thread)
 {
@@ -125,12 +113,11 @@ static amb_status use_heights(const amb_context *context, hill_state *s, amb_ima
     s->bounds = malloc(HILL_PATCHES * HILL_PATCHES * sizeof *s->bounds);
     if (!s->bounds)
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for the bounds of scene hillscape");
-    amb_status status = amb_image_create(info.width, info.height, 1, height, error);
+    amb_status status = amb_texture_to_image(s->height, 0, 0, height, error);
     if (status == AMB_OK)
         status = amb_image_create(info.width, info.height, 2, &job.slope, error);
     if (status == AMB_OK) {
         job.height = *height;
-        amb_parallel_for(context, info.height, height_row, &job);
         amb_parallel_for(context, info.height, slope_row, &job);
         amb_parallel_for(context, HILL_PATCHES, bounds_row, &job);
         status = amb_texture_from_image(job.slope, AMB_TEXEL_RGBA16F, true, &s->slopes, error);
@@ -162,8 +149,8 @@ static void grow(hill_state *s, const amb_image *height)
             v2x at = {u * 9.0f, v * 9.0f};
             float woods = fbm2(noise_gradient2, at, (amb_lattice){.seed = 91}, (amb_fbm){5, 2.0f, 0.55f}).value;
             float above = (here - HILL_SEA) * 300.0f;
-            float wanted = 0.22f + 2.6f * woods - 0.006f * (above - 20.0f) - 0.35f * steep;
-            if (above < 2.6f || above > 110.0f || steep > 0.85f || amb_unit(h.z) > wanted)
+            float wanted = 0.26f + 2.9f * woods - 0.004f * (above - 25.0f) - 0.30f * steep;
+            if (above < 2.6f + 7.0f * amb_unit(amb_hash(h.z)) || above > 110.0f || steep > 0.85f || amb_unit(h.z) > wanted)
                 continue;
             float conifer = f_saturate(0.35f + above * 0.008f + 0.8f * woods);
             uint32_t bits = amb_hash(h.w);

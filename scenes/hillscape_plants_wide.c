@@ -158,8 +158,8 @@ amb_status hill_draw_trees(const hill_pass *pass, amb_pass *out, amb_error *erro
 /* ---- grass --------------------------------------------------------------------------------------------------------
  */
 
-enum { GRASS_SIDE = 176 };
-#define GRASS_SPACING 0.55f
+enum { GRASS_SIDE = 232 };
+#define GRASS_SPACING 0.38f
 #define GRASS_REACH (0.5f * GRASS_SPACING * GRASS_SIDE)
 
 /* Tuft number → a cell of the world's own grid around the eye, and what grows in it by chance. */
@@ -183,7 +183,7 @@ static void grass_vertex(const amb_vs_in *in, amb_vs_out *out)
             f_smoothstep(f_set(0.5f), f_set(0.25f), east * east + south * south);
     grown = grown * f_smoothstep(f_set(0.0f), f_set(-25.0f), y - f->p.snow_line);
     r->foot = (v3x){place.x, y - 0.05f, place.y};
-    r->size = (0.34f + 0.55f * chance.w * chance.w) * grown;
+    r->size = (0.22f + 0.42f * chance.w * chance.w) * grown;
     f32x kind = f_sel(more.x < 0.50f, f_set(0.0f), f_sel(more.x < 0.80f, f_set(1.0f), f_set(2.0f)));
     r->kind = f_sel(more.y < 0.07f, f_set(3.0f), kind);
     r->seed = more.z;
@@ -227,11 +227,11 @@ static void grass_fragment(const amb_fs_in *in, amb_fs_out *out)
     s.albedo = v3x_mul(v4x_xyz(colour), hill_meadow_tint(f, v->world, f_set(1.0f)));
     s.roughness = f_set(0.5f);
     s.f0 = f_set(0.02f);
-    s.open = 0.35f + 0.65f * up;
+    s.open = 0.55f + 0.45f * up;
     s.through = f_set(0.45f);
     s.lift = f_set(0.1f);
     hill_light(pass, &s, in->live);
-    s.diffuse = v3x_scale(s.diffuse, 0.45f + 0.55f * up);
+    s.diffuse = v3x_scale(s.diffuse, 0.75f + 0.35f * up);
     hill_write(pass, out, &s, hill_lit(&s), ID_GRASS);
     if (!pass->color_off)
         out->color[0].w = cover;

@@ -130,14 +130,15 @@ AMB_INLINE hill_air hill_air_along(const hill_pass *pass, v3x direction, f32x di
         height = -height;
         climb = -climb;
     }
-    const float density = 0.00042f, falloff = 1.0f / 140.0f;
+    const float density = 0.00034f, falloff = 1.0f / 140.0f;
     f32x depth = fog_depth(height, climb, distance, density * f->p.haze, falloff);
     f32x left = f_exp(-depth);
     f32x sunward = f_saturate(v3x_dot(direction, v3x_splat(f->sky.to_sun)));
     f32x glow = sunward * sunward;
     glow = glow * glow;
     glow = glow * glow * 0.35f;
-    v3x colour = v3x_add(v3x_splat(f->haze_rgb), v3x_scale(v3x_splat(f->light[LIGHT_SUN].rgb), glow * 0.25f));
+    v3x level = v3x_scale(sky_horizon_rgb(&f->sky, (v3x){direction.x, f_set(0.0f), direction.z}), f_set(f->gain * 0.85f));
+    v3x colour = v3x_add(v3x_add(v3x_splat(f->haze_rgb), level), v3x_scale(v3x_splat(f->light[LIGHT_SUN].rgb), glow * 0.15f));
     return (hill_air){left, v3x_scale(colour, 1.0f - left)};
 }
 

@@ -75,36 +75,46 @@ static void ground_weights(const hill_frame *f, f32x y, f32x up, v4x noise, f32x
     weight[GROUND_GRASS] = rest * (one - sand);
 }
 
-/* Rock on both upright planes, weighted by where the ground faces. */
-static material_point rock_at(const amb_material *rock, const hill_surface *s, v3x dx, v3x dy)
+/* A material on a plane at two sizes: the fine one near, the coarse one (turned, so that the two never agree) far away,
+ * so that no tile repeats to the eye. */
+static material_point plane_at(const amb_material *m, v2x place, v2x px, v2x py, v3 along_u, v3 along_v, f32x far)
 {
-    f32x ax = s->smooth.x * s->smooth.x, az = s->smooth.z * s->smooth.z, total = f_max(ax + az, f_set(1.0e-12f));
-    material_point sum = material_none();
-    f32x wx = f_smoothstep(f_set(0.25f), f_set(0.75f), ax / total);
-    material_point a = material_at(rock, (v2x){s->world.z, s->world.y}, (v2x){dx.z, dx.y}, (v2x){dy.z, dy.y},
-                                   (v3){0, 0, 1}, (v3){0, 1, 0});
-    material_point b = material_at(rock, (v2x){s->world.x, s->world.y}, (v2x){dx.x, dx.y}, (v2x){dy.x, dy.y},
-                                   (v3){1, 0, 0}, (v3){0, 1, 0});
-    material_add(&sum, &a, wx);
-    material_add(&sum, &b, 1.0f - wx);
+    const float a = 0.1413f, b = 0.1037f; /* 1/5.7 as large, turned by 36° */
+    v2x wide = {place.x * a + place.y * b, place.y * a - place.x * b};
+    v2x wx = {px.x * a + px.y * b, px.y * a - px.x * b}, wy = {py.x * a + py.y * b, py.y * a - py.x * b};
+    material_point sum = material_none(), coarse = material_far(m, wide, wx, wy);
+    f32x share = 1.0f - 0.65f * (1.0f - far);
+    material_add(&sum, &coarse, share);
+    if (m_any(share < 1.0f)) {
+        material_point fine = material_at(m, place, px, py, along_u, along_v);
+        material_add(&sum, &fine, 1.0f - share);
+    }
     return sum;
 }
 
-/* A material of level ground at two sizes: the fine one near, the coarse one (turned, so that the two never agree) so
- * that no tile repeats to the eye. */
+/* Rock on the two upright planes, weighted by where the ground faces. */
+static material_point rock_at(const amb_material *rock, const hill_surface *s, v3x dx, v3x dy, f32x far)
+{
+    f32x ax = s->smooth.x * s->smooth.x, az = s->smooth.z * s->smooth.z, total = f_max(ax + az, f_set(1.0e-12f));
+    material_point sum = material_none();
+    f32x wx = f_smoothstep(f_set(0.3f), f_set(0.7f), ax / total);
+    if (m_any(wx > 0.0f)) {
+        material_point a = plane_at(rock, (v2x){s->world.z, s->world.y}, (v2x){dx.z, dx.y}, (v2x){dy.z, dy.y},
+                                    (v3){0, 0, 1}, (v3){0, 1, 0}, far);
+        material_add(&sum, &a, wx);
+    }
+    if (m_any(wx < 1.0f)) {
+        material_point b = plane_at(rock, (v2x){s->world.x, s->world.y}, (v2x){dx.x, dx.y}, (v2x){dy.x, dy.y},
+                                    (v3){1, 0, 0}, (v3){0, 1, 0}, far);
+        material_add(&sum, &b, 1.0f - wx);
+    }
+    return sum;
+}
+
 static material_point level_at(const amb_material *m, const hill_surface *s, v3x dx, v3x dy, f32x far)
 {
-    const float a = 0.1413f, b = 0.1037f; /* 1/5.7 as large, turned by 36° */
-    v2x place = {s->world.x, s->world.z}, px = {dx.x, dx.z}, py = {dy.x, dy.z};
-    v2x wide = {place.x * a + place.y * b, place.y * a - place.x * b};
-    v2x wx = {px.x * a + px.y * b, px.y * a - px.x * b}, wy = {py.x * a + py.y * b, py.y * a - py.x * b};
-    material_point fine = material_at(m, place, px, py, (v3){1, 0, 0}, (v3){0, 0, 1});
-    material_point coarse = material_at(m, wide, wx, wy, (v3){0.806f, 0, 0.592f}, (v3){-0.592f, 0, 0.806f});
-    material_point sum = material_none();
-    f32x share = 0.35f + 0.5f * far;
-    material_add(&sum, &fine, 1.0f - share);
-    material_add(&sum, &coarse, share);
-    return sum;
+    return plane_at(m, (v2x){s->world.x, s->world.z}, (v2x){dx.x, dx.z}, (v2x){dy.x, dy.z}, (v3){1, 0, 0}, (v3){0, 0, 1},
+                    far);
 }
 
 /* The blend at the surface; weights are sharpened by the reliefs' heights: grass grows from the hollows of rock, sand
@@ -119,7 +129,7 @@ static material_point ground_at(const hill_frame *f, const hill_surface *s, f32x
         m[i] = material_none();
         if (!m_any(weight[i] > 0.0f))
             continue;
-        m[i] = i == GROUND_ROCK ? rock_at(&f->state->ground[i], s, dx, dy)
+        m[i] = i == GROUND_ROCK ? rock_at(&f->state->ground[i], s, dx, dy, far)
                                 : level_at(&f->state->ground[i], s, dx, dy, far);
         f32x sharp = weight[i] * (0.25f + 1.5f * m[i].height) * weight[i];
         weight[i] = f_sel(weight[i] > 0.0f, sharp, zero);
@@ -172,10 +182,10 @@ static void terrain_fragment(const amb_fs_in *in, amb_fs_out *out)
     v4x fine = hill_fine_noise(f, s.world), broad = hill_broad_noise(f, s.world);
     f32x weight[GROUND_COUNT];
     ground_weights(f, s.world.y, s.smooth.y, (v4x){fine.x, broad.y, fine.z, broad.w}, weight);
-    f32x far = f_smoothstep(f_set(15.0f), f_set(260.0f), s.distance);
+    f32x far = f_smoothstep(f_set(10.0f), f_set(180.0f), s.distance);
     material_point m = ground_at(f, &s, weight, far);
     s.albedo = v3x_mul(m.albedo, hill_meadow_tint_of(fine, broad, weight[GROUND_GRASS]));
-    s.normal = v3x_normalize(v3x_add(s.smooth, v3x_scale(m.bent, 1.0f - 0.6f * far)));
+    s.normal = v3x_normalize(v3x_add(s.smooth, m.bent));
     s.open *= m.open;
     s.roughness = m.roughness;
     s.f0 = m.f0;

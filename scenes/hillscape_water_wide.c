@@ -87,8 +87,13 @@ static void water_fragment(const amb_fs_in *in, amb_fs_out *out)
     const water_varyings *v = in->varyings;
     hill_surface s = hill_surface_at(pass, v->world);
     v2x place = {s.world.x, s.world.z};
-    f32x footprint = s.distance * f->pixel / f_max(s.to_eye.y, f_set(0.04f)) * 0.6f;
+    f32x footprint = s.distance * f->pixel / f_max(s.to_eye.y, f_set(0.04f)) * 0.9f;
     amb_wave wave = waves_at(&f->waves, place, footprint);
+    /* Gusts: calm and ruffled patches. */
+    v2x drift = {place.x * 0.0043f - f->seconds * 0.004f, place.y * 0.0061f};
+    f32x gust = 0.30f + 1.3f * amb_sample_2d(f->state->noise, &foam_sampler, drift).x;
+    wave.slope = v2x_scale(wave.slope, gust);
+    wave.roughness *= gust * gust;
     s.normal = v3x_normalize((v3x){-wave.slope.x, f_set(1.0f), -wave.slope.y});
     /* Waves that face away are hidden behind others: the seen ones lean to the eye. */
     f32x away = f_max(0.02f - v3x_dot(s.normal, s.to_eye), f_set(0.0f));

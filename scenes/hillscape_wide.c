@@ -10,13 +10,13 @@
  */
 
 static const amb_camera_key keys[] = {
-    {0.0f, {232.0f, 9.0f, 262.0f}, {60.0f, 34.0f, -100.0f}, {0, 1, 0}},
-    {15.0f, {170.0f, 6.0f, 190.0f}, {-40.0f, 45.0f, -200.0f}, {0, 1, 0}},
-    {30.0f, {130.0f, 18.0f, 40.0f}, {60.0f, 60.0f, -300.0f}, {0, 1, 0}},
+    {0.0f, {366.0f, 9.0f, 306.0f}, {285.0f, 14.0f, 60.0f}, {0, 1, 0}},
+    {15.0f, {338.0f, 5.0f, 236.0f}, {230.0f, 18.0f, 20.0f}, {0, 1, 0}},
+    {30.0f, {225.0f, 7.0f, 110.0f}, {60.0f, 60.0f, -220.0f}, {0, 1, 0}},
     {45.0f, {20.0f, 90.0f, -60.0f}, {-330.0f, 110.0f, -330.0f}, {0, 1, 0}},
-    {60.0f, {-180.0f, 150.0f, 20.0f}, {120.0f, 30.0f, 200.0f}, {0, 1, 0}},
-    {75.0f, {60.0f, 40.0f, 380.0f}, {160.0f, 20.0f, 40.0f}, {0, 1, 0}},
-    {90.0f, {232.0f, 9.0f, 262.0f}, {60.0f, 34.0f, -100.0f}, {0, 1, 0}},
+    {60.0f, {-190.0f, 165.0f, 0.0f}, {160.0f, 20.0f, 170.0f}, {0, 1, 0}},
+    {75.0f, {60.0f, 60.0f, 420.0f}, {260.0f, 20.0f, 120.0f}, {0, 1, 0}},
+    {90.0f, {366.0f, 9.0f, 306.0f}, {285.0f, 14.0f, 60.0f}, {0, 1, 0}},
 };
 
 static float loop_time(double time, double period)
@@ -210,7 +210,7 @@ static amb_status hill_frame_draw(const void *state, const amb_scene_job *job, a
         f.particle[i] = fire_particle_at(i, job->time);
     amb_status status = make_panorama(job->context, &f, &textures, error);
     if (status == AMB_OK)
-        status = hill_shadows_make(job->context, &f, &textures, error);
+        status = hill_shadows_make(job->context, job->height, &f, &textures, error);
     if (status == AMB_OK && f.p.mirror && f.p.water)
         status = make_mirror(job, &f, &textures, error);
     if (status == AMB_OK)

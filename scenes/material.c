@@ -2,25 +2,20 @@
 
 #include "shade/color.h"
 
-enum { LEVEL_LIMIT = 2048 }; /* reliefs are no larger */
+enum { RELIEF_LIMIT = 2048 }; /* reliefs are no larger, unless the albedo has no smaller level */
 
 typedef struct relief_job {
-    const amb_texture *albedo;
-    amb_image *height, *relief;
-    float lod;
+    amb_image *albedo, *relief; /* the first channel of albedo becomes the height */
 } relief_job;
 
 static void height_row(void *user, int y, int thread)
 {
     (void)thread;
-    static const amb_sampler sampler = {.filter = AMB_BILINEAR};
-    const relief_job *job = user;
-    float *row = amb_image_row(job->height, 0, y);
-    for (int x = 0; x < job->height->width; x++) {
-        v2x uv = {((float)x + 0.5f) / (float)job->height->width, ((float)y + 0.5f) / (float)job->height->height};
-        float c = color_luminance(v4x_xyz(amb_sample_2d_lod(job->albedo, &sampler, uv, job->lod)));
-        row[x] = color_srgb_encode(c);
-    }
+    const amb_image *a = ((const relief_job *)user)->albedo;
+    float *r = amb_image_row(a, 0, y);
+    const float *g = a->channels > 2 ? amb_image_row(a, 1, y) : r, *b = a->channels > 2 ? amb_image_row(a, 2, y) : r;
+    for (int x = 0; x < a->width; x++)
+        r[x] = f_sqrt(f_max(color_luminance((v3x){r[x], g[x], b[x]}), 0.0f)); /* about as coded for display */
 }
 
 static float height_at(const amb_image *image, int x, int y)
@@ -34,7 +29,7 @@ static void relief_row(void *user, int y, int thread)
 {
     (void)thread;
     const relief_job *job = user;
-    const amb_image *h = job->height;
+    const amb_image *h = job->albedo;
     for (int x = 0; x < h->width; x++) {
         float here = height_at(h, x, y), ring = 0.0f;
         float u = 4.0f * (height_at(h, x + 1, y) - height_at(h, x - 1, y));
@@ -56,21 +51,18 @@ amb_status material_load(const amb_context *context, amb_assets *assets, amb_mat
     if (status != AMB_OK)
         return status;
     amb_texture_info info = amb_texture_describe(material->albedo);
-    job.albedo = material->albedo;
-    while (info.width > LEVEL_LIMIT || info.height > LEVEL_LIMIT) {
-        info.width = info.width > 1 ? info.width / 2 : 1;
-        info.height = info.height > 1 ? info.height / 2 : 1;
-        job.lod += 1.0f;
-    }
-    status = amb_image_create(info.width, info.height, 1, &job.height, error);
+    int level = 0;
+    while (level + 1 < info.levels && (info.width >> level > RELIEF_LIMIT || info.height >> level > RELIEF_LIMIT))
+        level++;
+    status = amb_texture_to_image(material->albedo, level, 0, &job.albedo, error);
     if (status == AMB_OK)
-        status = amb_image_create(info.width, info.height, 4, &job.relief, error);
+        status = amb_image_create(job.albedo->width, job.albedo->height, 4, &job.relief, error);
     if (status == AMB_OK) {
-        amb_parallel_for(context, info.height, height_row, &job);
-        amb_parallel_for(context, info.height, relief_row, &job);
+        amb_parallel_for(context, job.albedo->height, height_row, &job);
+        amb_parallel_for(context, job.albedo->height, relief_row, &job);
         status = amb_texture_from_image(job.relief, AMB_TEXEL_RGBA8, true, &material->relief, error);
     }
-    amb_image_close(&job.height);
+    amb_image_close(&job.albedo);
     amb_image_close(&job.relief);
     return status;
 }

@@ -36,7 +36,7 @@ typedef struct material_point {
 } material_point;
 
 static const amb_sampler material_sampler = {
-    .filter = AMB_TRILINEAR, .wrap = {AMB_REPEAT, AMB_REPEAT, AMB_REPEAT}, .max_anisotropy = 4};
+    .filter = AMB_TRILINEAR, .wrap = {AMB_REPEAT, AMB_REPEAT, AMB_REPEAT}, .max_anisotropy = 2};
 
 /* The material at plane coordinates (world units) whose axes are the unit vectors along_u and along_v in the world; dx
  * and dy are the coordinates' change to the next pixel. */
@@ -55,6 +55,20 @@ AMB_INLINE material_point material_at(const amb_material *m, v2x plane, v2x dx, 
         .roughness = f_set(m->roughness),
         .f0 = f_set(m->f0),
     };
+}
+
+/* Only what is seen from farther away: the albedo. Its relief counts as flat. */
+AMB_INLINE material_point material_far(const amb_material *m, v2x plane, v2x dx, v2x dy)
+{
+    f32x scale = f_set(1.0f / m->size), zero = f_set(0.0f);
+    v4x colour = amb_sample_2d_grad(m->albedo, &material_sampler, v2x_scale(plane, scale), v2x_scale(dx, scale),
+                                    v2x_scale(dy, scale));
+    return (material_point){.albedo = v3x_mul(v4x_xyz(colour), v3x_splat(m->tint)),
+                            .bent = {zero, zero, zero},
+                            .height = f_set(0.5f),
+                            .open = f_set(0.9f),
+                            .roughness = f_set(m->roughness),
+                            .f0 = f_set(m->f0)};
 }
 
 AMB_INLINE material_point material_none(void)

@@ -88,12 +88,12 @@ static void conifer(painter *p, float spread, v3 dark, v3 light)
         for (int b = 0; b < branches; b++) {
             float angle = 6.2831853f * ((float)b + chance(p)) / (float)branches;
             float length = most * (0.62f + 0.42f * chance(p)), droop = 0.10f + 0.22f * (1.0f - t);
-            for (int k = 2; k <= 14; k++) {
-                float along = (float)k / 14.0f;
+            for (int k = 2; k <= 20; k++) {
+                float along = (float)k / 20.0f;
                 v3 at = around(angle + 0.1f * (chance(p) - 0.5f), length * along,
                                y - droop * length * along * along + 0.010f * (chance(p) - 0.5f));
                 float tip = along * along, bright = 0.35f + 0.65f * chance(p);
-                leaf l = {at, 0.0085f - 0.004f * tip, blend(dark, light, bright * (0.25f + 0.75f * tip)),
+                leaf l = {at, 0.0062f - 0.003f * tip, blend(dark, light, bright * (0.25f + 0.75f * tip)),
                           v3_normalize((v3){at.x * 1.3f, 0.16f + 0.5f * tip * spread, at.z * 1.3f}),
                           0.30f + 0.70f * tip};
                 put(p, &l);
@@ -105,29 +105,29 @@ static void conifer(painter *p, float spread, v3 dark, v3 light)
 /* A crown of leafy balls on a branching trunk. */
 static void broadleaf(painter *p, float spread, v3 dark, v3 light)
 {
-    enum { BALLS = 26 };
+    enum { BALLS = 34 };
     trunk(p, 0.55f, 0.021f, (v3){0.10f, 0.075f, 0.05f});
     for (int ball = 0; ball < BALLS; ball++) {
         float t = ((float)ball + 0.5f) / BALLS, y = 0.29f + 0.58f * t;
         float bulge = 1.0f - (2.0f * t - 0.85f) * (2.0f * t - 0.85f) * 0.70f;
         v3 middle = around(2.399963f * (float)ball + chance(p), spread * bulge * (0.20f + 0.75f * chance(p)), y);
-        float radius = 0.060f + 0.055f * chance(p);
+        float radius = 0.042f + 0.055f * chance(p);
         for (int k = 0; k < 16; k++) { /* its branch */
             float along = (float)k / 16.0f;
             v3 at = {middle.x * along, 0.30f + (y - 0.30f) * along, middle.z * along};
             leaf l = {at, 0.007f * (1.2f - along), {0.09f, 0.07f, 0.05f}, {at.x, 0.1f, 0.6f}, 0.5f};
             put(p, &l);
         }
-        for (int k = 0; k < 900; k++) {
+        for (int k = 0; k < 1500; k++) {
             float z = 2.0f * chance(p) - 1.0f, ring = f_sqrt(1.0f - z * z);
             v3 n = around(6.2831853f * chance(p), ring, z), out;
-            float depth = 0.72f + 0.36f * chance(p);
+            float depth = 0.66f + 0.52f * chance(p) * chance(p);
             v3 at = v3_add(middle, v3_scale(n, radius * depth));
             out = v3_normalize((v3){at.x * 1.6f, (at.y - 0.52f) * 1.6f, at.z * 1.6f});
             float up = 0.5f + 0.5f * n.y,
                   outer = f_saturate((v3_length((v3){at.x, (at.y - 0.55f) * 0.8f, at.z})) / (spread + 0.06f));
             float bright = f_saturate(0.15f + 0.45f * up + 0.40f * chance(p));
-            leaf l = {at, 0.0062f, blend(dark, light, bright),
+            leaf l = {at, 0.0034f + 0.0016f * chance(p), blend(dark, light, bright),
                       v3_normalize(v3_add(v3_scale(out, 0.75f), v3_scale(n, 0.6f))),
                       0.25f + 0.35f * outer + 0.40f * up * outer};
             put(p, &l);
