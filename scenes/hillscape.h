@@ -179,6 +179,7 @@ AMB_INLINE maskx hill_box_seen(const hill_pass *pass, v3x low, v3x high)
 /* ---- draws of one pass; each does nothing where its object is off -------------------------------------------------
  */
 
+#define hill_terrain_draw WIDE(hill_terrain_draw)
 #define hill_draw_terrain WIDE(hill_draw_terrain)
 #define hill_draw_water WIDE(hill_draw_water)
 #define hill_draw_sky WIDE(hill_draw_sky)
@@ -190,6 +191,7 @@ AMB_INLINE maskx hill_box_seen(const hill_pass *pass, v3x low, v3x high)
 #define hill_lights_make WIDE(hill_lights_make)
 #define hill_shadows_make WIDE(hill_shadows_make)
 #define hill_pass_make WIDE(hill_pass_make)
+amb_draw hill_terrain_draw(const hill_pass *pass); /* what hill_draw_terrain records; uniforms are *pass itself */
 amb_status hill_draw_terrain(const hill_pass *pass, amb_pass *out, amb_error *error);
 amb_status hill_draw_water(const hill_pass *pass, amb_pass *out, amb_error *error);
 amb_status hill_draw_sky(const hill_pass *pass, amb_pass *out, amb_error *error);

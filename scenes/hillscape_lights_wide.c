@@ -252,7 +252,8 @@ amb_status hill_shadows_make(const amb_context *context, int height, hill_frame 
     size = size < p->shadow_size ? size : p->shadow_size;
     half = size / 2;
     for (int i = 0; i < HILL_LIGHTS; i++)
-        f->shadow[i] = (amb_shadow){.taps = i == LIGHT_FILL && p->shadow_taps > 2 ? 2 : p->shadow_taps, .offset = 1.6f, .bias = 2.0e-5f};
+        f->shadow[i] = (amb_shadow){
+            .taps = i == LIGHT_FILL && p->shadow_taps > 2 ? 2 : p->shadow_taps, .offset = 1.6f, .bias = 2.0e-5f};
     if (f->light_on[LIGHT_SUN] && p->sun_shadow)
         status = make_directional(&m, LIGHT_SUN, sun_ends, 3, size);
     if (status == AMB_OK && f->light_on[LIGHT_FILL] && p->fill_shadow)

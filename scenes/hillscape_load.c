@@ -150,7 +150,8 @@ static void grow(hill_state *s, const amb_image *height)
             float woods = fbm2(noise_gradient2, at, (amb_lattice){.seed = 91}, (amb_fbm){5, 2.0f, 0.55f}).value;
             float above = (here - HILL_SEA) * 300.0f;
             float wanted = 0.26f + 2.9f * woods - 0.004f * (above - 25.0f) - 0.30f * steep;
-            if (above < 2.6f + 7.0f * amb_unit(amb_hash(h.z)) || above > 110.0f || steep > 0.85f || amb_unit(h.z) > wanted)
+            if (above < 2.6f + 7.0f * amb_unit(amb_hash(h.z)) || above > 110.0f || steep > 0.85f ||
+                amb_unit(h.z) > wanted)
                 continue;
             float conifer = f_saturate(0.35f + above * 0.008f + 0.8f * woods);
             uint32_t bits = amb_hash(h.w);

@@ -113,8 +113,8 @@ static material_point rock_at(const amb_material *rock, const hill_surface *s, v
 
 static material_point level_at(const amb_material *m, const hill_surface *s, v3x dx, v3x dy, f32x far)
 {
-    return plane_at(m, (v2x){s->world.x, s->world.z}, (v2x){dx.x, dx.z}, (v2x){dy.x, dy.z}, (v3){1, 0, 0}, (v3){0, 0, 1},
-                    far);
+    return plane_at(m, (v2x){s->world.x, s->world.z}, (v2x){dx.x, dx.z}, (v2x){dy.x, dy.z}, (v3){1, 0, 0},
+                    (v3){0, 0, 1}, far);
 }
 
 /* The blend at the surface; weights are sharpened by the reliefs' heights: grass grows from the hollows of rock, sand
@@ -197,11 +197,9 @@ static void terrain_fragment(const amb_fs_in *in, amb_fs_out *out)
     hill_write(pass, out, &s, lit, ID_TERRAIN);
 }
 
-amb_status hill_draw_terrain(const hill_pass *pass, amb_pass *out, amb_error *error)
+amb_draw hill_terrain_draw(const hill_pass *pass)
 {
     const hill_frame *f = pass->frame;
-    if (!f->p.terrain)
-        return AMB_OK;
     amb_draw draw = hill_draw_of(pass, "terrain");
     draw.topology = AMB_PATCHES;
     draw.tessellation = (amb_tessellation){.hull = terrain_hull,
@@ -216,5 +214,11 @@ amb_status hill_draw_terrain(const hill_pass *pass, amb_pass *out, amb_error *er
     draw.vertex_count = (HILL_PATCHES + 1) * (HILL_PATCHES + 1);
     draw.cull = AMB_CULL_NONE;
     draw.wireframe = f->p.wireframe && !pass->depth_only;
-    return amb_pass_draw(out, &draw, error);
+    return draw;
+}
+
+amb_status hill_draw_terrain(const hill_pass *pass, amb_pass *out, amb_error *error)
+{
+    amb_draw draw = hill_terrain_draw(pass);
+    return pass->frame->p.terrain ? amb_pass_draw(out, &draw, error) : AMB_OK;
 }
