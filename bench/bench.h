@@ -63,6 +63,9 @@ extern const bench_workload bench_layers, bench_mesh, bench_mesh_million, bench_
 extern const bench_workload bench_draws, bench_memory, bench_elevated;
 extern const bench_workload bench_post_bloom, bench_post_mlaa, bench_post_chain;
 
+/* The table of scenes; not 0 when one failed. json: objects of a list that the caller opens and closes. */
+int bench_scenes(const bench_options *options, int frames, bool json);
+
 double bench_seconds(void); /* a clock that only goes forward */
 /* Root mean square difference of the first three channels of a planar image and interleaved RGBA pixels, rows from the
  * bottom as GL reads them. */

@@ -323,7 +323,7 @@ static void print_json(const settings *set, const report *reports, int count)
             printf("%s\"%s\": %.6g", k ? ", " : ", \"facts\": {", r->facts.fact[k].name, r->facts.fact[k].value);
         printf(r->facts.count ? "}}" : "}");
     }
-    printf("\n  ]\n}\n");
+    printf("\n  ]");
 }
 
 /* ---- the program ---------------------------------------------------------------------------------------------------
@@ -336,12 +336,13 @@ static void usage(FILE *to)
                 "\n\nworkloads:\n");
     for (int i = 0; bench_workloads[i]; i++)
         fprintf(to, "  %-10s %s\n", bench_workloads[i]->name, bench_workloads[i]->about);
+    fprintf(to, "  %-10s %s\n", "scenes", "a table of all scenes: ms a frame, shares of the stages");
 }
 
-static bool chosen(const settings *set, const bench_workload *w)
+static bool chosen(const settings *set, const char *name)
 {
     for (int i = 0; i < set->filters; i++)
-        if (strstr(w->name, set->filter[i]))
+        if (strstr(name, set->filter[i]))
             return true;
     return set->filters == 0;
 }
@@ -408,7 +409,7 @@ static int read_options(int argc, char **argv, settings *set)
     set->filters = argc - optind;
     set->filter = argv + optind;
     for (int i = 0; i < set->filters; i++) {
-        bool known = false;
+        bool known = strstr("scenes", set->filter[i]) != NULL;
         for (int k = 0; bench_workloads[k]; k++)
             known |= strstr(bench_workloads[k]->name, set->filter[i]) != NULL;
         if (!known) {
@@ -442,7 +443,7 @@ int main(int argc, char **argv)
     static report reports[32];
     int count = 0, failed = 0;
     for (; bench_workloads[count] && count < 32; count++) {
-        if (count >= 2 && !chosen(&set, bench_workloads[count]))
+        if (count >= 2 && !chosen(&set, bench_workloads[count]->name))
             continue;
         report *r = &reports[count];
         r->workload = bench_workloads[count];
@@ -452,8 +453,15 @@ int main(int argc, char **argv)
             print_report(&set, reports, r);
         fflush(stdout);
     }
-    if (set.json)
+    bool scenes = chosen(&set, "scenes");
+    if (set.json) {
         print_json(&set, reports, count);
+        printf(scenes ? ",\n  \"scenes\": [" : "\n}\n");
+    }
+    if (scenes)
+        failed |= bench_scenes(&set.options, set.options.quick ? 1 : 3, set.json);
+    if (scenes && set.json)
+        printf("\n  ]\n}\n");
     gl_close(&set.options.peer);
     return failed;
 }
