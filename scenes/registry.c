@@ -19,6 +19,7 @@
     X(pluto)      \
     X(julia)      \
     X(lucy)       \
+    X(elevated)   \
     X(hillscape)
 /* clang-format on */
 

@@ -65,9 +65,12 @@ AMB_INLINE noise_texture_cell_ terrain_octave_(const amb_terrain *t, int i, v2x 
 /* Z and its slope by quotient and chain rule. octaves: 0…16 of each lane, a real number: the last one fades in, so that
  * detail can follow distance without steps. A slope that the caller does not use costs nothing.
  *
+ * *coarse becomes what the first coarse_octaves of them alone give, at no cost.
+ *
  * With u = 2⁻ⁱf, v = 1 + h²: ∇(u/v) = (v∇u - u∇v)/v², ∇v = 2 J h (the report's "1 + 2hₓ…" is a slip: the 1 has no
  * slope), J = Σⱼ 2ʲ f″(2ʲp). */
-AMB_INLINE terrain_surface terrain_at(const amb_terrain *t, v2x p, f32x octaves)
+AMB_INLINE terrain_surface terrain_at_both(const amb_terrain *t, v2x p, f32x octaves, int coarse_octaves,
+                                           terrain_surface *coarse)
 {
     p = terrain_place_(p);
     f32x zero = f_set(0.0f);
@@ -75,6 +78,7 @@ AMB_INLINE terrain_surface terrain_at(const amb_terrain *t, v2x p, f32x octaves)
     f32x hx = zero, hy = zero, jxx = zero, jxy = zero, jyy = zero;
     float amplitude = 1.0f;
     noise_texture_cell_ next = terrain_octave_(t, 0, p);
+    *coarse = z;
     bool more = m_any(octaves > 0.0f);
     for (int i = 0; more; i++, amplitude *= 0.5f) {
         const amb_terrain_octave *o = &t->octave[i];
@@ -97,8 +101,15 @@ AMB_INLINE terrain_surface terrain_at(const amb_terrain *t, v2x p, f32x octaves)
         z.height += term;
         z.slope.x += share * fx - fall * (jxx * hx + jxy * hy);
         z.slope.y += share * fy - fall * (jxy * hx + jyy * hy);
+        if (i < coarse_octaves)
+            *coarse = z;
     }
     return z;
+}
+AMB_INLINE terrain_surface terrain_at(const amb_terrain *t, v2x p, f32x octaves)
+{
+    terrain_surface coarse;
+    return terrain_at_both(t, p, octaves, 0, &coarse);
 }
 
 /* The same slope by central differences at distance `step` > 0: four more heights, an error of step²/6 · Z‴. */
@@ -159,22 +170,30 @@ typedef struct terrain_march {
 } terrain_march;
 
 /* How much of the sun is seen from height y over p along the unit vector to_light (y up): 0…1. Steps grow with the
- * clearance and with the distance gone; the smallest clearance over distance, against the sun's spread, makes the
- * penumbra. Stops at the ceiling or at `reach`. Lights below the horizon are not seen. */
+ * clearance and with the distance gone. The smallest ratio of clearance to distance, between the steps by the parabola
+ * through three of them, against the sun's spread makes the penumbra. Stops at the ceiling or at `reach`. Lights below
+ * the horizon are not seen. */
 AMB_INLINE f32x terrain_sunlight(const amb_terrain *t, const terrain_march *m, v2x p, f32x y, v3 to_light, f32x octaves)
 {
-    f32x lit = f_set(to_light.y > 0.0f ? 1.0f : 0.0f), along = f_set(m->reach * (1.0f / 1024.0f));
-    maskx going = lit > 0.0f;
+    f32x none = f_set(1.0e9f), before = none, last = none, least = none;
+    f32x along = f_set(m->reach * (1.0f / 1024.0f));
+    maskx going = m_set(to_light.y > 0.0f);
+    least = f_sel(going, least, -none);
     for (int i = 0; i < m->steps && m_any(going); i++) {
         v2x at = {p.x + along * to_light.x, p.y + along * to_light.z};
         f32x height = y + along * to_light.y;
         f32x clearance = height - m->scale * terrain_at(t, at, f_sel(going, octaves, f_set(0.0f))).height;
-        f32x seen = f_saturate(0.5f + 0.5f * clearance / (along * m->spread));
-        lit = f_sel(going, f_min(lit, seen), lit);
-        along += f_max(0.5f * clearance, along * 0.06f);
-        going &= (lit > 0.0f) & (height < m->ceiling) & (along < m->reach);
+        f32x ratio = clearance / along;
+        f32x bend = (before - last) + (ratio - last), lean = ratio - before;
+        f32x valley = last - lean * lean / f_max(8.0f * bend, f_set(1.0e-9f));
+        f32x lowest = f_sel((last < before) & (last < ratio) & (before < none), f_min(valley, ratio), ratio);
+        least = f_sel(going, f_min(lowest, least), least);
+        before = f_sel(going, last, before);
+        last = f_sel(going, ratio, last);
+        along += f_max(0.5f * clearance, along * 0.02f);
+        going &= (ratio > -m->spread) & (height < m->ceiling) & (along < m->reach);
     }
-    return lit * lit * (3.0f - 2.0f * lit);
+    return f_smoothstep(f_set(-m->spread), f_set(m->spread), least);
 }
 
 #endif

@@ -270,6 +270,12 @@ static void octaves_fade_in(void **state)
         near(before, after, 0.004 * ldexp(1.0, -(int)o));
     }
     near((double)terrain_at(t, p, 16.0f).height, (double)terrain_at(t, p, 99.0f).height, 0);
+    terrain_surface coarse, fine = terrain_at_both(t, p, 9.5f, 4, &coarse);
+    terrain_surface four = terrain_at(t, p, 4.0f), all = terrain_at(t, p, 9.5f);
+    assert_memory_equal(&coarse, &four, sizeof four);
+    assert_memory_equal(&fine, &all, sizeof all);
+    fine = terrain_at_both(t, p, 2.5f, 4, &coarse);
+    assert_memory_equal(&coarse, &fine, sizeof fine);
 }
 
 /* ---- endless flight
