@@ -229,7 +229,8 @@ static bool run_batch(amb_pass *pass, bool last)
 static size_t chunk_bytes(const amb_pass *pass, const raster_chunk *chunk)
 {
     const amb_geometry *g = &chunk->draw->state.geometry;
-    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y, triangles = chunk->count, vertices = 3 * triangles;
+    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y, triangles = chunk->count,
+           vertices = chunk->most_vertices;
     if (g->shader)
         vertices = triangles *= (size_t)g->vertices;
     return (tiles + 1) * sizeof(uint32_t) + (vertices * (chunk->stride + 2) + triangles * (6 + 2)) * sizeof(uint32_t);
@@ -264,6 +265,7 @@ static bool run_primitives(amb_pass *pass, const raster_draw *draw)
     do {
         uint64_t left = draw->triangles - chunk.first;
         chunk.count = left < draw->chunk_most ? (uint32_t)left : draw->chunk_most;
+        chunk.most_vertices = 3 * chunk.count;
         if (!raster_add_chunk(pass, &chunk))
             return false;
         chunk.first += chunk.count;

@@ -89,6 +89,7 @@ typedef struct raster_chunk {
     uint32_t
         patch; /* or: first is 0, and from this patch of the window on, after `skipped` of its triangles, so many */
     uint32_t skipped;
+    uint32_t most_vertices; /* before it has any */
 
     int32_t *x, *y;   /* of the vertices: window, 1/256 pixel */
     uint32_t *vertex; /* raster_vertex records of `stride` words each */
@@ -151,9 +152,9 @@ typedef struct raster_patches {
     uint64_t first; /* patch of the draw */
     uint32_t count;
     raster_factors *factors;
-    uint32_t *primitives; /* that each will give */
-    float *constants;     /* [group][float][lane] */
-    int32_t *corners;     /* [group][corner][lane] */
+    uint32_t *points, *primitives; /* that each will give */
+    float *constants;              /* [group][float][lane] */
+    int32_t *corners;              /* [group][corner][lane] */
 } raster_patches;
 
 struct amb_pass {

@@ -14,7 +14,7 @@ AMB_DECLARE_WIDE(void, raster_hull,
 
 static size_t patch_bytes(const amb_tessellation *t)
 {
-    return sizeof(raster_factors) + sizeof(uint32_t) * (1 + (size_t)t->patch_floats + (size_t)t->corners);
+    return sizeof(raster_factors) + sizeof(uint32_t) * (2 + (size_t)t->patch_floats + (size_t)t->corners);
 }
 
 /* A draw's window: as many patches as fit its bytes, in whole groups. */
@@ -42,15 +42,18 @@ bool raster_make_patches(amb_pass *pass)
     if (patches == 0)
         return true;
     pass->patches.factors = malloc(patches * sizeof *pass->patches.factors);
+    pass->patches.points = malloc(patches * sizeof *pass->patches.points);
     pass->patches.primitives = malloc(patches * sizeof *pass->patches.primitives);
     pass->patches.constants = aligned_alloc(64, (floats + 16) * sizeof *pass->patches.constants); /* never none */
     pass->patches.corners = aligned_alloc(64, corners * sizeof *pass->patches.corners);
-    return pass->patches.factors && pass->patches.primitives && pass->patches.constants && pass->patches.corners;
+    return pass->patches.factors && pass->patches.points && pass->patches.primitives && pass->patches.constants &&
+           pass->patches.corners;
 }
 
 void raster_free_patches(amb_pass *pass)
 {
     free(pass->patches.factors);
+    free(pass->patches.points);
     free(pass->patches.primitives);
     free(pass->patches.constants);
     free(pass->patches.corners);
@@ -72,19 +75,20 @@ static bool cut_window(amb_pass *pass, const raster_draw *draw)
 {
     raster_chunk chunk = {.draw = draw};
     for (uint32_t patch = 0; patch < pass->patches.count; patch++) {
-        const uint32_t primitives = pass->patches.primitives[patch];
+        const uint32_t points = pass->patches.points[patch], primitives = pass->patches.primitives[patch];
         for (uint32_t used = 0; used < primitives;) {
             const uint32_t left = primitives - used, room = draw->chunk_most - chunk.count;
             if (chunk.count > 0 && left > room) {
                 if (!raster_add_chunk(pass, &chunk))
                     return false;
-                chunk.count = 0;
+                chunk.count = chunk.most_vertices = 0;
                 continue;
             }
             if (chunk.count == 0)
                 chunk.patch = patch, chunk.skipped = used;
             const uint32_t taken = left < room ? left : room;
             chunk.count += taken;
+            chunk.most_vertices += points < 3 * taken ? points : 3 * taken;
             used += taken;
         }
     }
