@@ -35,7 +35,8 @@ EXACT   := -ffp-contract=off -fno-math-errno -fno-trapping-math
 CPPFLAGS += -Iinclude -I. -D_GNU_SOURCE -DAMB_VERSION='"$(VERSION)"' -isystem /usr/include/OpenEXR \
             -isystem /usr/include/Imath -isystem /usr/include/stb
 CFLAGS  += -std=c17 $(OPT) -g1 -fPIC -fopenmp -fvisibility=default $(EXACT) $(WARN) $(SANITIZE)
-LDFLAGS += -fopenmp $(SANITIZE)
+# The build ID tells the cache of made assets that the code changed.
+LDFLAGS += -fopenmp -Wl,--build-id=sha1 $(SANITIZE)
 LDLIBS  += -lembree3 -lOpenEXRCore-3_1 -lassimp -lstb -lpng -lmd -lz -lm
 
 MACHINE := $(shell uname -m)
@@ -119,7 +120,7 @@ force:
 check: $(TESTS) $(BUILD)/ambiance ## this build's unit and property tests (about a minute)
 	@CC=$(CC) tests/build_rules.sh $(BUILD)
 	@failed=; for t in $(TESTS); do \
-	    echo "== $$t"; AMBIANCE=$(BUILD)/ambiance $$t > $$t.log 2>&1 && tail -n 1 $$t.log || { failed="$$failed $$t"; cat $$t.log; }; \
+	    echo "== $$t"; AMBIANCE=$(BUILD)/ambiance AMBIANCE_CACHE=$(BUILD)/cache $$t > $$t.log 2>&1 && tail -n 1 $$t.log || { failed="$$failed $$t"; cat $$t.log; }; \
 	done; \
 	test -z "$$failed" || { echo "failed:$$failed"; exit 1; }
 

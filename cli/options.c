@@ -178,11 +178,11 @@ int open_setup(const setup *chosen, amb_context **context, amb_assets **assets)
 {
     char found[PATH_MAX];
     amb_error error;
-    amb_assets_options options = {.user_dir = chosen->assets, .pack_dir = chosen->pack};
+    amb_assets_options options = {.user_dir = chosen->assets, .pack_dir = chosen->pack, .keep_made = true};
     *context = NULL;
     *assets = NULL;
     if (chosen->assets && strcmp(chosen->assets, "builtin") == 0)
-        options = (amb_assets_options){.builtin_only = true};
+        options = (amb_assets_options){.builtin_only = true, .keep_made = true};
     if (options.user_dir && !is_folder(options.user_dir))
         return fail(EXIT_FILES, "--assets: %s; a folder, or `builtin`, is expected", options.user_dir);
     if (options.pack_dir && !is_folder(options.pack_dir))

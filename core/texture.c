@@ -171,7 +171,7 @@ amb_status amb_texture_create(const amb_texture_desc *desc, amb_texture **out, a
         status = amb_fail(error, AMB_ERROR_MEMORY, "texture: no memory for %zu bytes of texels", bytes);
         goto error;
     }
-    memset(t->data + t->words, 0, bytes - t->words * sizeof(uint32_t));
+    memset(t->data, 0, bytes); /* what pads rows, too: two equal textures are equal byte by byte */
     if (desc->data) {
         store_levels(t, desc->data, given);
         status = texture_make_mips(t, given, error);

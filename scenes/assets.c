@@ -1,6 +1,7 @@
 /* The asset resolver: finds each asset's source when it is created, loads on request, remembers what was used. */
 #include "core/names.h"
 #include "io/file.h"
+#include "scenes/asset_cache.h"
 #include "scenes/asset_table.h"
 #include "scenes/builtin/builtin.h"
 
@@ -29,6 +30,7 @@ struct amb_assets {
     const amb_context *context;
     int count;
     asset *asset; /* one a row of the table */
+    asset_cache cache;
 };
 
 /* ---- where ----------------------------------------------------------------------------------------------------- */
@@ -163,6 +165,7 @@ amb_status amb_assets_create(const amb_context *context, const amb_assets_option
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for the asset table");
     }
     *assets = (amb_assets){.context = context, .count = asset_table_count, .asset = items};
+    asset_cache_open(&assets->cache, options->keep_made);
     if (!options->builtin_only)
         status = find_user_folder(options->user_dir, user, error);
     if (status == AMB_OK && !options->builtin_only)
@@ -191,17 +194,6 @@ void amb_assets_close(amb_assets **assets)
 }
 
 /* ---- loading --------------------------------------------------------------------------------------------------- */
-
-/* Of the file's bytes, or of "builtin:NAME:VERSION". */
-static void set_hash(asset *item, const uint8_t *data, size_t bytes)
-{
-    char text[128];
-    if (item->source == AMB_ASSET_BUILTIN) {
-        bytes = (size_t)snprintf(text, sizeof text, "builtin:%s:%d", item->row->name, item->row->version);
-        data = (const uint8_t *)text;
-    }
-    SHA256Data(data, bytes, item->sha256);
-}
 
 /* A cube map stays; a 2:1 panorama becomes one whose faces are as fine as its horizon. */
 static amb_status to_cube(const amb_context *context, const char *path, amb_texture **texture, amb_error *error)
@@ -260,35 +252,68 @@ static amb_status load_source(const amb_context *context, asset *item, amb_error
     if (status == AMB_OK)
         status = item->row->kind == ASSET_MESH ? load_mesh(context, item, error)
                                                : load_texture(context, item, data, bytes, error);
-    if (status == AMB_OK)
-        set_hash(item, data, bytes);
+    if (status == AMB_OK && data)
+        SHA256Data(data, bytes, item->sha256);
     free(data);
     return status;
 }
 
-static amb_status load(const amb_context *context, asset *item, amb_error *error);
+static amb_status load(amb_assets *assets, asset *item, amb_error *error);
 
-/* From another asset's texture. Its hash is that one's for irradiance, else over "NAME:VERSION of" and that one's. */
-static amb_status load_derived(const amb_context *context, asset *item, amb_error *error)
+/* Sets the hash: of the file; of "builtin:NAME:VERSION"; of "NAME:VERSION of" and the hash of what it is made from, for
+ * irradiance just that one. Only files need be loaded for it. */
+static amb_status identify(amb_assets *assets, asset *item, amb_error *error)
 {
-    char text[192];
-    amb_status status = load(context, item->of, error);
+    char text[256];
+    int length = 0;
+    if (item->sha256[0])
+        return AMB_OK;
+    if (!item->of && item->source != AMB_ASSET_BUILTIN)
+        return load(assets, item, error);
+    amb_status status = item->of ? identify(assets, item->of, error) : AMB_OK;
     if (status != AMB_OK)
         return status;
     if (item->row->kind == ASSET_IRRADIANCE) {
         memcpy(item->sha256, item->of->sha256, sizeof item->sha256);
-        return amb_irradiance_cube(context, item->of->texture, &item->texture, error);
+        return AMB_OK;
     }
-    int length = snprintf(text, sizeof text, "%s:%d of %s", item->row->name, item->row->version, item->of->sha256);
+    if (item->of)
+        length = snprintf(text, sizeof text, "%s:%d of %s", item->row->name, item->row->version, item->of->sha256);
+    else
+        length = snprintf(text, sizeof text, "builtin:%s:%d", item->row->name, item->row->version);
     SHA256Data((const uint8_t *)text, (size_t)length, item->sha256);
-    return item->row->derive(context, item->of->texture, &item->texture, error);
+    return AMB_OK;
 }
 
-static amb_status load(const amb_context *context, asset *item, amb_error *error)
+/* From its generator, or from another asset's texture. */
+static amb_status make(amb_assets *assets, asset *item, amb_error *error)
+{
+    if (!item->of)
+        return load_source(assets->context, item, error);
+    amb_status status = load(assets, item->of, error);
+    if (status != AMB_OK)
+        return status;
+    return item->row->kind == ASSET_IRRADIANCE
+               ? amb_irradiance_cube(assets->context, item->of->texture, &item->texture, error)
+               : item->row->derive(assets->context, item->of->texture, &item->texture, error);
+}
+
+/* Once a run; made textures once a build, where the cache is on. */
+static amb_status load(amb_assets *assets, asset *item, amb_error *error)
 {
     if (item->texture || item->mesh)
         return AMB_OK;
-    return item->of ? load_derived(context, item, error) : load_source(context, item, error);
+    if (!item->of && item->source != AMB_ASSET_BUILTIN)
+        return load_source(assets->context, item, error);
+    amb_status status = identify(assets, item, error);
+    if (status == AMB_OK && item->row->kind != ASSET_MESH)
+        item->texture = asset_cache_get(&assets->cache, item->row->name, item->sha256);
+    if (status != AMB_OK || item->texture)
+        return status;
+    status = make(assets, item, error);
+    if (status == AMB_OK && item->texture)
+        asset_cache_put(&assets->cache, item->row->name, item->sha256, item->texture);
+    return status;
 }
 
 static const char *name_of(const void *user, int index)
@@ -310,7 +335,7 @@ static amb_status use(amb_assets *assets, const char *name, bool is_mesh, asset 
     if ((item->row->kind == ASSET_MESH) != is_mesh)
         return amb_fail(error, AMB_ERROR_NOT_FOUND, "asset %s: it is a %s, not a %s", name,
                         is_mesh ? "texture" : "mesh", is_mesh ? "mesh" : "texture");
-    amb_status status = load(assets->context, item, error);
+    amb_status status = load(assets, item, error);
     item->is_used |= status == AMB_OK;
     *out = item;
     return status;

@@ -15,6 +15,8 @@ typedef struct amb_assets_options {
     const char *user_dir; /* NULL: $AMBIANCE_ASSETS, then $XDG_DATA_HOME/ambiance (or ~/.local/share/ambiance) */
     const char *pack_dir; /* NULL: $AMBIANCE_PACK, then <user data>/ambiance-pack, then the build's default */
     bool builtin_only;    /* ignore both folders: what goldens use */
+    bool keep_made; /* keep made textures between runs: in $AMBIANCE_CACHE ("off": nowhere), $XDG_CACHE_HOME/ambiance or
+                     * ~/.cache/ambiance */
 } amb_assets_options;
 
 amb_status amb_assets_create(const amb_context *context, const amb_assets_options *options, amb_assets **out,
@@ -31,7 +33,7 @@ typedef struct amb_asset_info {
     const char *name, *about;
     amb_asset_source source;
     char path[1024];
-    char sha256[65]; /* of the file, or of "builtin:NAME:VERSION"; "" until loaded */
+    char sha256[65]; /* of the file, or of what says how it is made; "" until loaded */
 } amb_asset_info;
 int amb_assets_count(const amb_assets *assets);
 void amb_assets_describe(const amb_assets *assets, int index, amb_asset_info *out);
