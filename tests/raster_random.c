@@ -79,6 +79,24 @@ static void random_output(random_pass *p, amb_draw *s)
         s->scissor = (amb_rect){number(p, 256) - 30, number(p, 256) - 30, 1 + number(p, 128), 1 + number(p, 128)};
 }
 
+/* Patches instead of primitives. Depth comes from the shader, as the patches' own is rounded. */
+static void random_patches(random_pass *p, const raster_test_shaders *shaders, random_draw *d)
+{
+    amb_draw *s = &d->state;
+    amb_tessellation *t = &s->tessellation;
+    t->shape = number(p, 2) ? AMB_QUAD : AMB_TRIANGLE;
+    t->hull = shaders->hull, t->domain = t->shape == AMB_QUAD ? shaders->quad : shaders->triangle;
+    t->corners = (t->shape == AMB_QUAD ? 4 : 3) + number(p, 2);
+    t->patch_floats = 1;
+    t->partitioning = (amb_partitioning)number(p, 3);
+    t->clockwise = number(p, 2), t->points = number(p, 4) == 0;
+    s->topology = AMB_PATCHES;
+    s->vertex = NULL;
+    s->writes_depth = true, s->fragment = shaders->coded_depth;
+    d->uniforms.factors = number(p, 256);
+    d->uniforms.corners = t->points ? 1 : 3;
+}
+
 static void random_draw_state(random_pass *p, const raster_test_shaders *shaders, random_draw *d)
 {
     amb_draw *s = &d->state;
@@ -116,7 +134,10 @@ static void random_draw_state(random_pass *p, const raster_test_shaders *shaders
     s->uniforms = &d->uniforms, s->uniforms_size = sizeof d->uniforms;
     s->writes_depth = !d->flat || number(p, 2);
     s->fragment = s->writes_depth ? shaders->coded_depth : number(p, 8) == 0 ? NULL : shaders->coded;
-    if (s->fragment && number(p, 12) == 0)
+    int kind = number(p, 12);
+    if (kind < 2)
+        random_patches(p, shaders, d);
+    else if (kind == 2 && s->fragment)
         s->vertex = NULL, s->geometry.shader = NULL; /* the whole screen */
 }
 
@@ -178,7 +199,8 @@ static bool random_target(random_pass *p)
     size_t samples = (size_t)p->width * (size_t)p->height * (size_t)p->samples;
     p->depth = calloc(samples, sizeof *p->depth);
     p->stencil = calloc(samples, sizeof *p->stencil);
-    return made && p->depth && p->stencil;
+    p->mask = calloc(samples, sizeof *p->mask);
+    return made && p->depth && p->stencil && p->mask;
 }
 
 /* One field beyond what is allowed: the draw must be refused, and leave nothing behind. */
@@ -233,7 +255,7 @@ static bool refuses_nonsense(random_pass *p, amb_pass *pass, const amb_draw *goo
         d.tessellation = (amb_tessellation){0};
         break;
     default:
-        d.vertex = NULL, d.fragment = NULL;
+        d.vertex = NULL, d.fragment = NULL, d.topology = AMB_TRIANGLES;
     }
     amb_error error;
     return amb_pass_draw(pass, &d, &error) != AMB_OK && strlen(error.detail) > 10;
@@ -306,6 +328,7 @@ static void free_pass(random_pass *p)
     amb_image_close(&p->target.stencil);
     free(p->depth);
     free(p->stencil);
+    free(p->mask);
     free(p);
 }
 

@@ -38,16 +38,21 @@ typedef struct random_pass {
     const random_draw *now;
     int primitive;
     bool front;
-    float position_z; /* of a full-screen draw: 1; below 0: from the vertices */
     unsigned covered; /* samples of the pixel being drawn */
+    uint8_t *mask;    /* samples of every pixel, while a triangle is found */
 } random_pass;
 
 static inline bool random_has_depth(const random_pass *p) { return p->target.depth || p->target.depth_texture.texture; }
+
+static inline bool random_is_screen(const amb_draw *d) { return !d->vertex && d->topology != AMB_PATCHES; }
 
 /* What attachment i keeps of a value. */
 float random_stored(const random_pass *p, int i, int channel, float value);
 void random_truth_clear(random_pass *p);
 void random_truth_draw(random_pass *p, const random_draw *d);
+/* Of the draw p->now: a triangle, line or point of 3, 2 or 1 corners; a pixel, all of its samples. */
+void random_truth_primitive(random_pass *p, const float clip[3][4], int corners);
+void random_truth_pixel(void *pass, int x, int y);
 /* The end of a pass: every sample becomes what the pixel holds after it. */
 void random_truth_resolve(random_pass *p);
 

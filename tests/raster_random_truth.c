@@ -148,7 +148,7 @@ static float depth_truth(const random_pass *p)
     const amb_draw *draw = &p->now->state;
     if (draw->writes_depth)
         return clamp01(source_truth(p, 9));
-    if (!draw->vertex)
+    if (random_is_screen(draw))
         return 1.0f;
     float z = p->now->vertex[0].clip.z;
     int exponent;
@@ -192,7 +192,7 @@ static void truth_sample(random_pass *p, int at)
     float depth = depth_truth(p);
     amb_compare mode = draw->depth_compare;
     if (mode == AMB_COMPARE_DEFAULT)
-        mode = draw->vertex ? AMB_LESS : AMB_LESS_EQUAL;
+        mode = random_is_screen(draw) ? AMB_LESS_EQUAL : AMB_LESS;
     bool near_enough = !random_has_depth(p) || compare_truth(mode, (double)depth, (double)p->depth[at]);
     if (draw->stencil.on) {
         const amb_stencil *s = &draw->stencil;
@@ -231,27 +231,36 @@ static void truth_samples(random_pass *p, int x, int y)
             truth_sample(p, (y * p->width + x) * p->samples + i);
 }
 
-static void truth_pixel(void *user, int x, int y)
+void random_truth_pixel(void *user, int x, int y)
 {
     random_pass *p = user;
     p->covered = ~0u;
     truth_samples(p, x, y);
 }
 
+typedef struct sample_mask {
+    uint8_t *covered; /* samples of every pixel */
+    int width, sample;
+} sample_mask;
+
+static void add_sample(void *user, int x, int y)
+{
+    sample_mask *m = user;
+    m->covered[y * m->width + x] |= (uint8_t)(1u << m->sample);
+}
+
 static void truth_fill_samples(random_pass *p, const truth_triangle *t)
 {
     static const int8_t positions[4][16] = {
         {0, 0}, {4, 4, -4, -4}, {-2, -6, 6, -2, -6, 2, 2, 6}, {1, -3, -1, 3, 5, 1, -3, -5, -5, 5, -7, -1, 3, 7, 7, -7}};
-    int level = p->samples == 1 ? 0 : p->samples == 2 ? 1 : p->samples == 4 ? 2 : 3;
-    for (int y = 0; y < p->height && truth_area(t) != 0; y++)
-        for (int x = 0; x < p->width; x++) {
-            p->covered = 0;
-            for (int i = 0; i < p->samples; i++)
-                p->covered |=
-                    (unsigned)truth_covers_sample(t, x, y, positions[level][2 * i], positions[level][2 * i + 1]) << i;
-            if (p->covered)
-                truth_samples(p, x, y);
-        }
+    const int8_t *at = positions[p->samples == 1 ? 0 : p->samples == 2 ? 1 : p->samples == 4 ? 2 : 3];
+    sample_mask m = {p->mask, p->width, 0};
+    memset(p->mask, 0, (size_t)(p->width * p->height));
+    for (; m.sample < p->samples; m.sample++)
+        truth_fill_sample(t, p->width, p->height, at[2 * m.sample], at[2 * m.sample + 1], add_sample, &m);
+    for (int i = 0; i < p->width * p->height; i++)
+        if ((p->covered = p->mask[i]) != 0)
+            truth_samples(p, i % p->width, i / p->width);
 }
 
 static bool culled(const random_pass *p)
@@ -273,7 +282,7 @@ static void truth_triangle_of(random_pass *p, const float clip[3][4])
         if (!(d > 0 || d < 0) || culled(p))
             return;
         for (int i = 0; i < 3; i++)
-            truth_draw_line(clip[i], clip[(i + 1) % 3], p->width, p->height, !draw->depth_clamp, truth_pixel, p);
+            truth_draw_line(clip[i], clip[(i + 1) % 3], p->width, p->height, !draw->depth_clamp, random_truth_pixel, p);
         return;
     }
     truth_triangle piece[7];
@@ -285,21 +294,7 @@ static void truth_triangle_of(random_pass *p, const float clip[3][4])
     }
 }
 
-/* Positions of a primitive's corners, -1 in the first past the last primitive. */
-static int corners_of(amb_topology topology, int n, int count, int at[3])
-{
-    static const int corners[] = {3, 3, 3, 2, 2, 1};
-    int first = topology == AMB_TRIANGLES ? 3 * n : topology == AMB_LINES ? 2 * n : n;
-    for (int k = 0; k < 3; k++)
-        at[k] = topology == AMB_TRIANGLE_FAN && k == 0 ? 0 : first + k;
-    if (topology == AMB_TRIANGLE_STRIP && n % 2)
-        at[1] = first + 2, at[2] = first + 1;
-    if (first + corners[topology] > count)
-        return 0;
-    return corners[topology];
-}
-
-static void truth_primitive(random_pass *p, const float clip[3][4], int corners)
+void random_truth_primitive(random_pass *p, const float clip[3][4], int corners)
 {
     const amb_draw *s = &p->now->state;
     float size = s->point_size > 0.0f ? s->point_size : 1.0f;
@@ -307,63 +302,9 @@ static void truth_primitive(random_pass *p, const float clip[3][4], int corners)
     if (corners == 3)
         truth_triangle_of(p, clip);
     else if (corners == 2)
-        truth_draw_line(clip[0], clip[1], p->width, p->height, !s->depth_clamp, truth_pixel, p);
+        truth_draw_line(clip[0], clip[1], p->width, p->height, !s->depth_clamp, random_truth_pixel, p);
     else
-        truth_draw_point(clip[0], size, p->width, p->height, !s->depth_clamp, truth_pixel, p);
-}
-
-/* What the copying geometry shader makes of a primitive: strips of its corners, as far as vertices are allowed. */
-static void truth_copies(random_pass *p, const float clip[3][4], int corners)
-{
-    const raster_test_uniforms *u = &p->now->uniforms;
-    const amb_geometry *g = &p->now->state.geometry;
-    const int needed = g->output == AMB_TRIANGLES ? 3 : g->output == AMB_LINES ? 2 : 1;
-    int emitted = 0;
-    for (int c = 0; c < u->copies && c < RASTER_TEST_COPIES(p->primitive); c++) {
-        float strip[3][4];
-        for (int k = 0; k < corners && emitted < g->vertices; k++, emitted++) {
-            for (int i = 0; i < 4; i++)
-                strip[k][i] = clip[k][i] + (&u->step.x)[i] * (float)c;
-            if (k + 1 >= needed)
-                truth_primitive(p, (const float(*)[4])(strip + k + 1 - needed), needed);
-        }
-    }
-}
-
-void random_truth_draw(random_pass *p, const random_draw *d)
-{
-    const amb_draw *s = &d->state;
-    p->now = d;
-    p->primitive = 0;
-    p->front = true;
-    for (int i = 0; !s->vertex && i < p->width * p->height; i++)
-        truth_pixel(p, i % p->width, i / p->width);
-    if (!s->vertex)
-        return;
-    int instances = s->instances ? (int)s->instances : 1;
-    for (int instance = 0; instance < instances; instance++) {
-        int at[3], corners;
-        for (int n = 0; (corners = corners_of(s->topology, n, (int)s->count, at)) > 0; n++, p->primitive++) {
-            float clip[3][4];
-            bool valid = true;
-            for (int k = 0; k < corners && valid; k++) {
-                uint32_t v = s->indices ? d->index[at[k]] : (uint32_t)at[k];
-                valid = !s->indices || v < s->vertex_count;
-                if (!valid)
-                    break;
-                const float *offset = &d->uniforms.offset.x;
-                memcpy(clip[k], &d->vertex[v].clip, sizeof clip[k]);
-                for (int c = 0; c < 4; c++)
-                    clip[k][c] += offset[c] * (float)instance;
-            }
-            if (!valid)
-                continue;
-            if (s->geometry.shader)
-                truth_copies(p, (const float(*)[4])clip, corners);
-            else
-                truth_primitive(p, (const float(*)[4])clip, corners);
-        }
-    }
+        truth_draw_point(clip[0], size, p->width, p->height, !s->depth_clamp, random_truth_pixel, p);
 }
 
 /* ---- begin and end ------------------------------------------------------------------------------------------------

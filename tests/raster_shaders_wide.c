@@ -73,6 +73,44 @@ static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
     out->depth = code(in->primitive, 9, u->hostile);
 }
 
+static void hull(const amb_hs_in *in, amb_hs_out *out)
+{
+    static const float table[8] = RASTER_TEST_FACTORS;
+    const raster_test_uniforms *u = in->uniforms;
+    f32x *zero = out->constants;
+    for (int i = 0; i < 6; i++) {
+        i32x pick = RASTER_TEST_FACTOR(in->patch, i, u->factors);
+        f32x factor = f_gather(table, pick);
+        if (u->factors % 2 == 0)
+            factor = f_sel(pick == 7, f_set(2.0f), factor);
+        if (i < 4)
+            out->edge[i] = factor;
+        else
+            out->inside[i - 4] = factor;
+    }
+    *zero = f_set(0.0f);
+}
+
+static v4x corner_of(const amb_ds_in *in, int k)
+{
+    const raster_test_uniforms *u = in->uniforms;
+    return v4x_add(v4x_gather(&u->vertex->clip, in->corner[k] * 2),
+                   v4x_scale(v4x_splat(u->offset), i_to_f(in->instance)));
+}
+
+static void quad(const amb_ds_in *in, amb_vs_out *out)
+{
+    f32x u = in->u, v = in->v, left = 1.0f - u, bottom = 1.0f - v;
+    out->clip = v4x_add(v4x_add(v4x_scale(corner_of(in, 0), left * bottom), v4x_scale(corner_of(in, 1), u * bottom)),
+                        v4x_add(v4x_scale(corner_of(in, 2), u * v), v4x_scale(corner_of(in, 3), left * v)));
+}
+
+static void triangle(const amb_ds_in *in, amb_vs_out *out)
+{
+    out->clip = v4x_add(v4x_add(v4x_scale(corner_of(in, 0), in->u), v4x_scale(corner_of(in, 1), in->v)),
+                        v4x_scale(corner_of(in, 2), in->w));
+}
+
 static void copy(const amb_gs_in *in, amb_gs_out *out)
 {
     const raster_test_uniforms *u = in->uniforms;
@@ -136,6 +174,9 @@ const raster_test_shaders *raster_test_shaders_get(void)
         .lanes = AMB_LANES,
         .vertex = vertex,
         .copy = copy,
+        .hull = hull,
+        .quad = quad,
+        .triangle = triangle,
         .value = value,
         .one = one,
         .write_depth = write_depth,
