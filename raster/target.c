@@ -71,7 +71,9 @@ static bool same_pixels(const raster_attachment *a, const raster_attachment *b)
 static amb_status check_attachment(amb_pass *pass, raster_attachment *a, const char *name, int number, amb_error *error)
 {
     const char *kind = a->image ? "image" : "texture";
-    if (a->image && (a->image->channels < 1 || a->image->channels > AMB_MAX_CHANNELS || !a->image->data))
+    if (a->image && !a->image->data)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s image %d has no pixels; data is NULL", name, number);
+    if (a->image && (a->image->channels < 1 || a->image->channels > AMB_MAX_CHANNELS))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s image %d has %d channels; 1 to %d are allowed", name,
                         number, a->image->channels, AMB_MAX_CHANNELS);
     amb_status status = a->texture ? check_texture(a, name, number, error) : AMB_OK;
@@ -79,6 +81,9 @@ static amb_status check_attachment(amb_pass *pass, raster_attachment *a, const c
         return status;
     int width = a->image ? a->image->width : level_size(a->texture->info.width, a->level);
     int height = a->image ? a->image->height : level_size(a->texture->info.height, a->level);
+    if (width < 1 || height < 1 || width > AMB_MAX_IMAGE_SIZE || height > AMB_MAX_IMAGE_SIZE)
+        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s %s %d is %d×%d; sizes of 1 to %d are allowed", name,
+                        kind, number, width, height, AMB_MAX_IMAGE_SIZE);
     if (pass->width == 0)
         pass->width = width, pass->height = height;
     if (width != pass->width || height != pass->height)
@@ -181,9 +186,6 @@ amb_status raster_prepare_target(amb_pass *pass, amb_error *error)
         return status;
     if (pass->width == 0)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: neither colour, depth nor stencil is given");
-    if (pass->width < 1 || pass->height < 1 || pass->width > AMB_MAX_IMAGE_SIZE || pass->height > AMB_MAX_IMAGE_SIZE)
-        return amb_fail(error, AMB_ERROR_ARGUMENT, "target: size %d×%d is outside 1…%d", pass->width, pass->height,
-                        AMB_MAX_IMAGE_SIZE);
     if (t->samples != 0 && t->samples != 1 && t->samples != 2 && t->samples != 4 && t->samples != 8)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: samples is %d; 0, 1, 2, 4 and 8 are allowed", t->samples);
     pass->samples = t->samples > 1 ? t->samples : 1;

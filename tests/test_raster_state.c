@@ -529,6 +529,12 @@ static void bad_targets_are_refused(void **state)
     refuse_target(context, &(amb_target){.color = {a}, .stencil = a}, "4 channels");
     refuse_target(context, &(amb_target){.color = {a}, .depth = c, .stencil = c}, "also the stencil");
     refuse_target(context, &(amb_target){.color = {a}, .samples = 3}, "samples is 3");
+    amb_image odd = *a;
+    odd.width = 65537, refuse_target(context, &(amb_target){.color = {&odd}}, "65537×4; sizes of 1 to 65536");
+    odd.width = 0, refuse_target(context, &(amb_target){.color = {&odd, a}}, "0×4");
+    odd = *a, odd.height = -3, refuse_target(context, &(amb_target){.depth = c, .color = {&odd}}, "4×-3");
+    odd = *a, odd.channels = 5, refuse_target(context, &(amb_target){.color = {&odd}}, "5 channels");
+    odd = *a, odd.data = NULL, refuse_target(context, &(amb_target){.color = {&odd}}, "no pixels");
     amb_error error;
     amb_pass *none = NULL;
     assert_int_equal(amb_pass_begin(context, &(amb_target){.color = {a}}, NULL, &error), AMB_ERROR_ARGUMENT);
