@@ -102,7 +102,7 @@ static amb_status solar_load(const amb_context *context, amb_assets *assets, voi
         }
         amb_params_defaults(params, s->params[i]);
         if (i == 0) /* beside lit planets it outshines them */
-            status = amb_params_set(params, s->params[0], "scene solar", "radiance", "8", error);
+            status = amb_params_set(params, s->params[0], "scene solar", "radiance", "4", error);
         if (status == AMB_OK)
             status = planet_load(bodies[i].body, context, assets, &s->body[i], error);
     }

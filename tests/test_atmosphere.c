@@ -221,6 +221,18 @@ static void fitted_depth_agrees_with_the_table_it_stands_for(void **state)
     }
 }
 
+static void exponentials_are_exact_enough(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int i = 0; i <= 127000; i++) {
+        double a = -87.0 + i * 1e-3;
+        worst = fmax(worst, fabs((double)atmosphere_exp_((float)a) / exp((double)(float)a) - 1.0));
+    }
+    assert_true(worst < 8e-6);
+    assert_true(atmosphere_exp_(-1e30f) >= 0.0f && atmosphere_exp_(-1e30f) < 2e-38f && atmosphere_exp_(0.0f) == 1.0f);
+}
+
 static void light_is_never_negative_and_never_nan(void **state)
 {
     (void)state;
@@ -255,6 +267,7 @@ int main(void)
         cmocka_unit_test(fast_form_agrees_with_the_integrals),
         cmocka_unit_test(more_samples_converge),
         cmocka_unit_test(fitted_depth_agrees_with_the_table_it_stands_for),
+        cmocka_unit_test(exponentials_are_exact_enough),
         cmocka_unit_test(light_is_never_negative_and_never_nan),
     };
     return cmocka_run_group_tests_name("atmosphere", tests, NULL, NULL);

@@ -123,12 +123,37 @@ static void test_spheroid_normals(void **state)
     assert_true(worst < 1e-5);
 }
 
+/* How map coordinates change from pixel to pixel, against differences in double precision: also across ±180°, where u
+ * jumps and a difference of u itself would pick the smallest mip; only near a pole u's change is less. */
+static void test_map_gradients_have_no_seam(void **state)
+{
+    (void)state;
+    double worst = 0;
+    int across = 0;
+    for (int i = 0; i < 20000; i++) {
+        double lat = uniform(-1.45, 1.45), lon = i & 1 ? PI + uniform(-1e-3, 1e-3) : uniform(-PI, PI);
+        double to_lat = lat + uniform(-2e-3, 2e-3), to_lon = lon + uniform(-2e-3, 2e-3);
+        vec d = {cos(lat) * sin(lon), sin(lat), -cos(lat) * cos(lon)};
+        vec e = {cos(to_lat) * sin(to_lon), sin(to_lat), -cos(to_lat) * cos(to_lon)};
+        v2x change = planet_uv_change(v3x_from(d), v3x_from(vec_add(e, d, -1)));
+        v2x here = planet_uv(v3x_from(d)), there = planet_uv(v3x_from(e));
+        double u = (double)there.x - (double)here.x, v = (double)there.y - (double)here.y;
+        across += fabs(u) > 0.5;
+        u -= round(u);
+        u *= cos(lat); /* as if a texel were as wide everywhere as at the equator */
+        worst = fmax(worst, fmax(fabs((double)change.x - u), fabs((double)change.y - v)));
+    }
+    assert_true(across > 2000);
+    assert_true(worst < 1.5e-6 * 4); /* of changes up to 3e-4: curvature and float */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ring_shadow_on_the_planet),
         cmocka_unit_test(test_planet_shadow_on_the_rings),
         cmocka_unit_test(test_spheroid_normals),
+        cmocka_unit_test(test_map_gradients_have_no_seam),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -127,7 +127,8 @@ static int tear_down(void **state)
 }
 
 /* A body alone, from any eye, with "name=value" settings; NULL-ended. */
-static amb_frame *render(const fixture *f, bool earth, v3 eye, v3 target, const char *const *settings)
+static amb_frame *render_outputs(const fixture *f, bool earth, v3 eye, v3 target, const char *const *settings,
+                                 bool aovs)
 {
     const amb_scene *scene = earth ? f->earth_scene : f->uranus_scene;
     const planet_body *body = earth ? f->earth : f->uranus;
@@ -140,7 +141,7 @@ static amb_frame *render(const fixture *f, bool earth, v3 eye, v3 target, const 
     amb_frame *frame = NULL;
     amb_image *layer;
     assert_int_equal(amb_frame_create(WIDTH, HEIGHT, &frame, NULL), AMB_OK);
-    for (size_t i = 0; i < scene->aov_count; i++)
+    for (size_t i = 0; i < scene->aov_count && aovs; i++)
         assert_int_equal(amb_frame_add_layer(frame, scene->aovs[i].name, scene->aovs[i].channels, &layer, NULL),
                          AMB_OK);
     amb_scene_job job = {.context = f->context, .params = params, .width = WIDTH, .height = HEIGHT, .frame = frame};
@@ -153,6 +154,11 @@ static amb_frame *render(const fixture *f, bool earth, v3 eye, v3 target, const 
     amb_status status = body->draw(state, params, &view, 0.0, canvas.pass, NULL);
     assert_int_equal(canvas_finish(&job, scene->aovs, &canvas, status, NULL), AMB_OK);
     return frame;
+}
+
+static amb_frame *render(const fixture *f, bool earth, v3 eye, v3 target, const char *const *settings)
+{
+    return render_outputs(f, earth, eye, target, settings, true);
 }
 
 static double at(const amb_frame *frame, const char *layer, int c, int x, int y)
@@ -287,6 +293,37 @@ static void test_earth_light_is_finite(void **state)
         }
 }
 
+/* Light is what is left of the ground's, plus what the air scatters: the parts that `show` gives alone add up; and
+ * other outputs beside the colour (for which the air takes two draws instead of one) change none of its bits. */
+static void test_air_parts_add_up(void **state)
+{
+    const fixture *f = *state;
+    static const char *const parts[] = {"beauty", "beauty", "attenuation", "scattering"};
+    static const char *const airs[] = {"true", "false", "true", "true"};
+    v3 eye = {0.3f, 0.9f, 2.6f};
+    amb_frame *frame[5];
+    for (int i = 0; i < 5; i++) {
+        const char *const settings[] = {"show",    parts[i % 4], "air",         airs[i % 4], "clouds", "0",
+                                        "samples", "1",          "sun_azimuth", "70",        NULL};
+        frame[i] = render_outputs(f, true, eye, (v3){0, 0, 0}, settings, i < 4);
+    }
+    int ground = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            for (int c = 0; c < 3; c++) {
+                assert_true(at(frame[0], "color", c, x, y) == at(frame[4], "color", c, x, y));
+                if (at(frame[0], "id", 0, x, y) == 0.0)
+                    continue;
+                double left = at(frame[1], "color", c, x, y) * at(frame[2], "color", c, x, y);
+                double sum = left + at(frame[3], "color", c, x, y);
+                assert_true(fabs(at(frame[0], "color", c, x, y) - sum) < 2e-6);
+                ground++;
+            }
+    assert_true(ground > 9000);
+    for (int i = 0; i < 5; i++)
+        amb_frame_close(&frame[i]);
+}
+
 /* ---- the tour --------------------------------------------------------------------------------------------------- */
 
 /* The flight keeps clear of every body, moves and turns without a jump, and shows each body large once. */
@@ -331,7 +368,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_seam_and_clean_poles), cmocka_unit_test(test_earth_components),
         cmocka_unit_test(test_clouds_fade_at_the_limb), cmocka_unit_test(test_earth_light_is_finite),
-        cmocka_unit_test(test_tour_passes_every_body),
+        cmocka_unit_test(test_air_parts_add_up),        cmocka_unit_test(test_tour_passes_every_body),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
