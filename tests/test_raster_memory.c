@@ -2,6 +2,7 @@
  * leave nothing behind, and leave what it was given usable. */
 #include "raster/internal.h"
 #include "tests/raster_shaders.h"
+#include "tests/stage_shaders.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -98,6 +99,38 @@ static amb_status try_pass(const tried *t, amb_error *error)
     return status;
 }
 
+/* Patches, cut finely enough for two chunks, with a geometry shader behind. */
+static amb_status try_patches(const tried *t, amb_error *error)
+{
+    static const v4 corner[4] = {{-1, -1, 0.5f, 1}, {1, -1, 0.5f, 1}, {1, 1, 0.5f, 1}, {-1, 1, 0.5f, 1}};
+    static const float factor[2 * 6] = {3, 4, 5, 6, 7, 8, 64, 64, 64, 64, 64, 64};
+    static const uint32_t index[8] = {0, 1, 2, 3, 0, 1, 2, 3};
+    const stage_test_shaders *s = stage_test_shaders_of(amb_context_isa(t->context));
+    const stage_test_uniforms u = {.clip = corner, .corners = 4, .factor = factor};
+    amb_target target = {.color = {t->image}, .samples = t->samples};
+    amb_draw d = {.lanes = s->lanes,
+                  .fragment = s->shade,
+                  .uniforms = &u,
+                  .uniforms_size = sizeof u,
+                  .varying_floats = 4,
+                  .indices = index,
+                  .count = 8,
+                  .vertex_count = 4,
+                  .topology = AMB_PATCHES};
+    d.tessellation = (amb_tessellation){.hull = s->hull, .domain = s->quad, .corners = 4, .patch_floats = 16};
+    amb_pass *pass = NULL;
+    amb_status status = raster_pass_begin(t->context, &target, 16, 0, &pass, error);
+    if (status == AMB_OK)
+        status = amb_pass_draw(pass, &d, error);
+    d.geometry = (amb_geometry){.shader = s->same, .vertices = 3};
+    if (status == AMB_OK)
+        status = amb_pass_draw(pass, &d, error);
+    if (status == AMB_OK)
+        status = amb_pass_finish(&pass, NULL, error);
+    amb_pass_close(&pass);
+    return status;
+}
+
 static amb_status try_texture(const tried *t, amb_error *error)
 {
     amb_texture *made = NULL;
@@ -161,6 +194,8 @@ static void memory_may_run_out_anywhere(void **state)
     fail_in_turn(&t, try_texture);
     for (t.samples = 1; t.samples <= 4; t.samples *= 4)
         fail_in_turn(&t, try_pass);
+    t.samples = 1;
+    fail_in_turn(&t, try_patches);
     amb_texture_close(&t.texture);
     amb_image_close(&t.image);
     amb_context_close(&t.context);
