@@ -34,6 +34,16 @@ static int32_t *make_packing(uint32_t lanes)
     return packing;
 }
 
+static void make_boxes(raster_scratch *s)
+{
+    for (int width = 1; width <= RASTER_SMALL_BOX; width++)
+        for (int height = 1; height <= RASTER_SMALL_BOX; height++) {
+            int32_t *box = s->boxes[width - 1 + RASTER_SMALL_BOX * (height - 1)];
+            for (int i = 0; i < width * height; i++)
+                box[i] = (i % width) << 9 | (i / width) << 17;
+        }
+}
+
 static bool make_scratch(const amb_pass *pass, raster_scratch *s)
 {
     const size_t vertices = RASTER_CHUNK_VERTICES + 16, corners = RASTER_CHUNK_EMITTED + 16; /* lanes of padding */
@@ -46,6 +56,7 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
     s->corner_memory = malloc(4 * corners * sizeof *s->corner_memory);
     s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
     s->tile = aligned_alloc(64, (raster_tile_floats(pass) + spare) * sizeof *s->tile);
+    make_boxes(s);
     s->packing = make_packing((uint32_t)amb_context_isa(pass->context));
     if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->group ||
         !s->tile || !s->packing)

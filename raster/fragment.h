@@ -134,7 +134,7 @@ static inline maskx live_lanes(const raster_tile *tile, const amb_draw *draw, co
             update_depth_stencil(tile, draw, at, 0, front, depth, covered, false);
         return m_set(false);
     }
-    return late ? covered : covered & output_tests(tile, draw, at, 0, front, depth);
+    return late ? covered : covered & output_tests(tile, draw, at, 0, front, depth, false);
 }
 
 /* Window coordinates of pixels packed as x | y << 16. */
@@ -152,14 +152,21 @@ static inline i32x block_position(const raster_tile *tile, int bx, int by)
 
 /* ---- the queue of quads ----------------------------------------------------------------------------------------- */
 
+/* Quads anywhere in the tile, each of any triangle of the draw. */
+typedef struct raster_quads {
+    raster_pixels at;
+    uint16_t index[RASTER_QUADS];          /* of the quad in its tile */
+    const float *varying[3][RASTER_QUADS]; /* of its three vertices */
+    f32x p[3], depth;                      /* perspective weights before division */
+    i32x position, primitive_front;
+} raster_quads;
+
 typedef struct raster_queue {
     const amb_draw *draw;
     int count;     /* quads waiting, below RASTER_QUADS */
     uint32_t live; /* bits of their lanes */
-    raster_pixels at;
-    const float *varying[3][RASTER_QUADS]; /* of each quad's three vertices */
-    f32x p[3], depth;                      /* perspective weights before division */
-    i32x position, primitive_front;
+    raster_quads quads;
+    uint8_t waiting[RASTER_MAX_TILE * RASTER_MAX_TILE / 4]; /* by quad of the tile: bits of the pixels that wait */
 } raster_queue;
 
 #if AMB_LANES > 4
@@ -171,6 +178,7 @@ static inline f32x permute(f32x a, i32x index)
     return (f32x)_mm256_permutevar8x32_ps((__m256)a, (__m256i)index);
 #endif
 }
+static inline i32x permute_i(i32x a, i32x index) { return f_bits(permute(f_from_bits(a), index)); }
 
 /* Lane `component` of every quad, to all lanes of the quad. */
 #if AMB_LANES == 16
@@ -180,13 +188,12 @@ static inline f32x permute(f32x a, i32x index)
 #endif
 
 /* The varyings of quads of different triangles. Records are padded, so that four floats can always be read. */
-static inline void interpolate_quads(const raster_queue *queue, f32x b1, f32x b2, f32x *varying)
+static inline void interpolate_quads(const raster_quads *q, int floats, f32x b1, f32x b2, f32x *varying)
 {
-    int floats = queue->draw->varying_floats;
     for (int i = 0; i < floats; i += 4) {
-        f32x base = load_quads(queue->varying[0], (size_t)i);
-        f32x delta1 = load_quads(queue->varying[1], (size_t)i) - base;
-        f32x delta2 = load_quads(queue->varying[2], (size_t)i) - base;
+        f32x base = load_quads(q->varying[0], (size_t)i);
+        f32x delta1 = load_quads(q->varying[1], (size_t)i) - base;
+        f32x delta2 = load_quads(q->varying[2], (size_t)i) - base;
 #define COMPONENT(k) varying[i + k] = (QUAD_SPLAT(base, k) + QUAD_SPLAT(delta1, k) * b1) + QUAD_SPLAT(delta2, k) * b2
         COMPONENT(0);
         COMPONENT(1);
@@ -196,69 +203,93 @@ static inline void interpolate_quads(const raster_queue *queue, f32x b1, f32x b2
     }
 }
 
+static __attribute__((noinline)) void shade_quads(const raster_tile *tile, const amb_draw *draw, const raster_quads *q,
+                                                  uint32_t live)
+{
+    f32x varying[AMB_MAX_VARYINGS + 4];
+    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = q->depth};
+    in.live = m_from_bits(live);
+    in.front = q->primitive_front < 0;
+    in.primitive = q->primitive_front & INT32_MAX;
+    in.thread = tile->thread;
+    set_position(&in, q->position);
+    f32x scale = 1.0f / ((q->p[0] + q->p[1]) + q->p[2]);
+    interpolate_quads(q, draw->varying_floats, q->p[1] * scale, q->p[2] * scale, varying);
+    shade_group(tile, draw, &q->at, &in, tests_late(draw), true);
+}
+
 /* Shades the waiting quads. */
 static __attribute__((noinline)) void flush_queue(const raster_tile *tile, raster_queue *queue)
 {
     if (queue->count == 0)
         return;
-    const amb_draw *draw = queue->draw;
+    raster_quads *q = &queue->quads;
+    for (int i = 0; i < queue->count; i++)
+        queue->waiting[q->index[i]] = 0;
     for (int i = queue->count; i < RASTER_QUADS; i++) { /* dead lanes: any valid memory */
-        queue->at.quad[i] = tile->spare;
+        q->at.quad[i] = tile->spare;
         for (int k = 0; k < 3; k++)
-            queue->varying[k][i] = queue->varying[k][0];
+            q->varying[k][i] = q->varying[k][0];
     }
-    f32x varying[AMB_MAX_VARYINGS + 4];
-    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = queue->depth};
-    in.live = m_from_bits(queue->live);
-    in.front = queue->primitive_front < 0;
-    in.primitive = queue->primitive_front & INT32_MAX;
-    in.thread = tile->thread;
-    set_position(&in, queue->position);
-    f32x scale = 1.0f / ((queue->p[0] + queue->p[1]) + queue->p[2]);
-    interpolate_quads(queue, queue->p[1] * scale, queue->p[2] * scale, varying);
-    shade_group(tile, draw, &queue->at, &in, tests_late(draw), true);
+    shade_quads(tile, queue->draw, q, queue->live);
     queue->count = 0;
     queue->live = 0;
 }
 
 /* Is one of the block's covered pixels waiting? Then its turn must come first. */
-static inline void flush_overlap(const raster_tile *tile, raster_queue *queue, const float *block, uint32_t covered)
+static inline void flush_overlap(const raster_tile *tile, raster_queue *queue, uint32_t first_quad, uint32_t covered)
 {
-    for (int i = 0; i < queue->count; i++) {
-        ptrdiff_t lane = queue->at.quad[i] - block;
-        if (lane >= 0 && lane < AMB_LANES && (covered >> lane & queue->live >> 4 * i & 15u) != 0) {
-            flush_queue(tile, queue);
-            return;
-        }
-    }
+    uint32_t waiting = 0;
+    for (uint32_t i = 0; i < RASTER_QUADS; i++)
+        waiting |= (uint32_t)queue->waiting[first_quad + i] << 4 * i;
+    if ((waiting & covered) != 0)
+        flush_queue(tile, queue);
 }
 
-/* Puts the block's live quads into the queue. */
-static inline void queue_quads(const raster_tile *tile, raster_queue *queue, const raster_shading *s, float *block,
-                               const f32x p[3], f32x depth, i32x position, uint32_t live)
+/* Puts those of the quads that have a live lane into the queue. None of their live pixels waits already. */
+static inline void queue_quads(const raster_tile *tile, raster_queue *queue, const raster_quads *from, uint32_t live)
 {
     uint32_t wanted = 0;
     for (int i = 0; i < RASTER_QUADS; i++)
         wanted |= (uint32_t)((live >> 4 * i & 15u) != 0) << i;
+    raster_quads *to = &queue->quads;
     while (wanted != 0) {
         int first = queue->count;
         i32x index = i_load(tile->packing + (size_t)(wanted * RASTER_QUADS + (uint32_t)first) * AMB_LANES);
         maskx taken = i_lane_index() >= 4 * first;
         for (int k = 0; k < 3; k++)
-            queue->p[k] = f_sel(taken, permute(p[k], index), queue->p[k]);
-        queue->depth = f_sel(taken, permute(depth, index), queue->depth);
-        queue->position = i_sel(taken, f_bits(permute(f_from_bits(position), index)), queue->position);
-        queue->primitive_front = i_sel(taken, i_set((int32_t)s->primitive_front), queue->primitive_front);
+            to->p[k] = f_sel(taken, permute(from->p[k], index), to->p[k]);
+        to->depth = f_sel(taken, permute(from->depth, index), to->depth);
+        to->position = i_sel(taken, permute_i(from->position, index), to->position);
+        to->primitive_front = i_sel(taken, permute_i(from->primitive_front, index), to->primitive_front);
         for (; wanted != 0 && queue->count < RASTER_QUADS; wanted &= wanted - 1) {
             int quad = __builtin_ctz(wanted), slot = queue->count++;
-            queue->live |= (live >> 4 * quad & 15u) << 4 * slot;
-            queue->at.quad[slot] = block + 4 * quad;
+            uint32_t pixels = live >> 4 * quad & 15u;
+            queue->live |= pixels << 4 * slot;
+            queue->waiting[from->index[quad]] |= (uint8_t)pixels;
+            to->index[slot] = from->index[quad];
+            to->at.quad[slot] = from->at.quad[quad];
             for (int k = 0; k < 3; k++)
-                queue->varying[k][slot] = s->vertex[k]->varying;
+                to->varying[k][slot] = from->varying[k][quad];
         }
         if (queue->count == RASTER_QUADS)
             flush_queue(tile, queue);
     }
+}
+
+/* The live quads of a block of one triangle, into the queue. */
+static inline void queue_block(const raster_tile *tile, raster_queue *queue, const raster_shading *s, float *block,
+                               uint32_t first_quad, const f32x p[3], f32x depth, i32x position, uint32_t live)
+{
+    raster_quads q = {.p = {p[0], p[1], p[2]}, .depth = depth, .position = position};
+    q.primitive_front = i_set((int32_t)s->primitive_front);
+    for (uint32_t i = 0; i < RASTER_QUADS; i++) {
+        q.at.quad[i] = block + 4 * i;
+        q.index[i] = (uint16_t)(first_quad + i);
+        for (int k = 0; k < 3; k++)
+            q.varying[k][i] = s->vertex[k]->varying;
+    }
+    queue_quads(tile, queue, &q, live);
 }
 #else
 static inline void flush_queue(const raster_tile *tile, raster_queue *queue) { (void)tile, (void)queue; }
@@ -350,7 +381,7 @@ static inline void fragment_samples(const raster_tile *tile, raster_shading *s, 
         if (!draw->fragment)
             update_depth_stencil(tile, draw, &at, base, front, depth[i], live[i], false);
         else if (!late)
-            live[i] &= output_tests(tile, draw, &at, base, front, depth[i]);
+            live[i] &= output_tests(tile, draw, &at, base, front, depth[i], false);
         any |= live[i];
     }
     if (!draw->fragment || !m_any(any))
@@ -388,7 +419,8 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     }
     maskx covered = cover & inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
 #if AMB_LANES > 4
-    flush_overlap(tile, queue, at.quad[0], m_bits(covered));
+    const uint32_t first_quad = (uint32_t)(by * tile->blocks_x + bx) * RASTER_QUADS;
+    flush_overlap(tile, queue, first_quad, m_bits(covered));
 #else
     (void)queue;
 #endif
@@ -402,7 +434,7 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
 #if AMB_LANES > 4
     if (!all_quads_live(bits)) {
-        queue_quads(tile, queue, s, at.quad[0], p, depth, block_position(tile, bx, by), bits);
+        queue_block(tile, queue, s, at.quad[0], first_quad, p, depth, block_position(tile, bx, by), bits);
         return;
     }
 #endif
@@ -429,7 +461,7 @@ static inline void fragment_screen(const raster_tile *tile, const amb_draw *draw
             depth[i] = in.depth;
             live[i] = inside_clip(tile, bx, by);
             if (!late)
-                live[i] &= output_tests(tile, draw, &at, i * tile->pass->planes, in.front, in.depth);
+                live[i] &= output_tests(tile, draw, &at, i * tile->pass->planes, in.front, in.depth, false);
             in.live |= live[i];
         }
         set_position(&in, block_position(tile, bx, by));

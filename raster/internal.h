@@ -41,6 +41,7 @@
 #define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */
 #define RASTER_MAX_SAMPLES 8
 #define RASTER_TILE 64
+#define RASTER_SMALL_BOX 4 /* quads, edge: small triangles are played together, quad by quad */
 
 /* Clip codes of a vertex. */
 enum {
@@ -130,7 +131,9 @@ typedef struct raster_scratch {
     float *group;     /* varyings of one group of vertices, as the shader writes them */
     float *tile;      /* colour and depth of one tile, block by block */
     int32_t *packing; /* [wanted][first][lane]: source lanes that bring a block's wanted quads to slots first… */
-    bool failed;      /* out of memory */
+    int32_t boxes[RASTER_SMALL_BOX * RASTER_SMALL_BOX][RASTER_SMALL_BOX * RASTER_SMALL_BOX];
+    /* [width - 1 + RASTER_SMALL_BOX · (height - 1), quads][…]: the quads of a box, x << 8 | y << 16 in pixels */
+    bool failed; /* out of memory */
     amb_pass_stats stats;
 } raster_scratch;
 

@@ -15,8 +15,10 @@ typedef struct raster_tile {
     int blocks_x;                           /* a row of the tile */
     int right, bottom;                      /* pixels of the target inside the tile */
     int clip_x0, clip_y0, clip_x1, clip_y1; /* of the draw: its scissor, in pixels of the tile, ends exclusive */
+    bool clipped;                           /* it leaves out some of them */
     float *spare;                           /* a block that is nobody's */
-    const int32_t *packing;                 /* raster_scratch's */
+    const int32_t *packing;                 /* raster_scratch's, and */
+    const int32_t (*boxes)[RASTER_SMALL_BOX * RASTER_SMALL_BOX];
     int thread;
     amb_pass_stats *stats;
 } raster_tile;
@@ -161,11 +163,11 @@ static inline maskx stencil_matches(const amb_stencil *s, i32x stored, maskx fro
 
 /* Which lanes pass the draw's stencil and depth tests. base: the first plane of the sample, here and below. */
 static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
-                                 maskx front, f32x depth)
+                                 maskx front, f32x depth, bool packed)
 {
-    maskx passed = compare_lanes(draw->depth_compare, depth, load_plane(at, base, false));
+    maskx passed = compare_lanes(draw->depth_compare, depth, load_plane(at, base, packed));
     if (draw->stencil.on)
-        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, base, false), front);
+        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, base, packed), front);
     return passed;
 }
 

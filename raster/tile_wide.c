@@ -1,6 +1,7 @@
 /* The tile stage: all chunks of a batch, in order, over one tile, from loading its pixels to storing them. */
 #include "raster/lines.h"
 #include "raster/multisample.h"
+#include "raster/small.h"
 #include "raster/tile_texture.h"
 
 #define raster_tile_play WIDE(raster_tile)
@@ -158,6 +159,7 @@ static bool set_clip(raster_tile *tile, const raster_draw *draw)
     int side = tile->pass->tile_size;
     tile->clip_x0 = clamp_to_tile(draw->x0 - tile->x0, side), tile->clip_x1 = clamp_to_tile(draw->x1 - tile->x0, side);
     tile->clip_y0 = clamp_to_tile(draw->y0 - tile->y0, side), tile->clip_y1 = clamp_to_tile(draw->y1 - tile->y0, side);
+    tile->clipped = tile->clip_x0 > 0 || tile->clip_y0 > 0 || tile->clip_x1 < side || tile->clip_y1 < side;
     return tile->clip_x0 < tile->clip_x1 && tile->clip_y0 < tile->clip_y1;
 }
 
@@ -174,38 +176,48 @@ static void play_screens(raster_tile *tile, const raster_chunk *chunk, size_t co
         }
 }
 
-/* Plays `count` primitives of the chunk; `index` is readable to AMB_LANES. */
+/* One primitive of a group. */
+static inline void play_one(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *g, int n)
+{
+    for (int i = 0; i < 3; i++)
+        s->number[i] = g->number[i][n];
+    s->primitive_front = g->primitive_front[n];
+    s->prepared = false;
+    if (s->chunk->draw->lines) {
+        play_line(tile, s, queue, g->low[n], g->high[n]);
+    } else if (s->chunk->draw->points) {
+        play_point(tile, s, queue, g->low[n], g->high[n]);
+    } else if (tile->pass->samples > 1) {
+        play_multisample(tile, s, g->low[n], g->high[n]);
+    } else if (!(g->small >> n & 1u)) {
+        play_large(tile, s, queue, g->low[n], g->high[n]);
+    } else {
+        raster_edge e[3];
+        for (int i = 0; i < 3; i++)
+            e[i] = (raster_edge){g->c[i][n], g->a[i][n], g->b[i][n], g->bias[i][n]};
+        s->inverse_area = g->inverse_area[n];
+        cover_32(tile, s, queue, e, box_in_tile(tile, g->low[n], g->high[n]));
+    }
+}
+
+/* Plays `count` primitives of the chunk, in order: runs of small triangles together; `index` is readable to AMB_LANES.
+ */
 static inline void play_group(const raster_tile *tile, raster_shading *s, raster_queue *queue,
                               const raster_chunk *chunk, const int32_t *index, int count)
 {
     edge_group g;
     make_group(tile, chunk, index, &g);
-    for (int n = 0; n < count; n++) {
-        for (int i = 0; i < 3; i++)
-            s->number[i] = g.number[i][n];
-        s->primitive_front = g.primitive_front[n];
-        s->prepared = false;
-        if (chunk->draw->lines) {
-            play_line(tile, s, queue, g.low[n], g.high[n]);
-            continue;
+    uint32_t small = find_small(tile, chunk, &g);
+    for (int n = 0; n < count;) {
+        int end = n;
+        while (end < count && (small >> end & 1u) != 0)
+            end++;
+        if (end > n) {
+            play_small(tile, s, queue, &g, n, end);
+            n = end;
+        } else {
+            play_one(tile, s, queue, &g, n++);
         }
-        if (chunk->draw->points) {
-            play_point(tile, s, queue, g.low[n], g.high[n]);
-            continue;
-        }
-        if (tile->pass->samples > 1) {
-            play_multisample(tile, s, g.low[n], g.high[n]);
-            continue;
-        }
-        if (!(g.small >> n & 1u)) {
-            play_large(tile, s, queue, g.low[n], g.high[n]);
-            continue;
-        }
-        raster_edge e[3];
-        for (int i = 0; i < 3; i++)
-            e[i] = (raster_edge){g.c[i][n], g.a[i][n], g.b[i][n], g.bias[i][n]};
-        s->inverse_area = g.inverse_area[n];
-        cover_32(tile, s, queue, e, box_in_tile(tile, g.low[n], g.high[n]));
     }
 }
 
@@ -239,9 +251,10 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
 {
     raster_tile tile = {.pass = pass, .data = scratch->tile, .thread = thread, .stats = &scratch->stats};
     raster_shading shading;
-    raster_queue queue = {.p = {f_set(1.0f)}};
+    raster_queue queue = {.quads.p = {f_set(1.0f)}};
     tile.spare = scratch->tile + raster_tile_floats(pass);
     tile.packing = scratch->packing;
+    tile.boxes = scratch->boxes;
     tile.x0 = number % pass->tiles_x * pass->tile_size;
     tile.y0 = number / pass->tiles_x * pass->tile_size;
     tile.blocks_x = pass->tile_size / AMB_BLOCK_W;

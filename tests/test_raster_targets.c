@@ -329,6 +329,20 @@ static void every_slice_is_a_target(void **state)
     amb_context_close(&context);
 }
 
+/* Every level, with its borders. */
+static void assert_same_texels(const amb_texture *a, const amb_texture *b)
+{
+    const int before = a->info.kind == AMB_TEXTURE_CUBE; /* texels of border to the left and above */
+    assert_int_equal(a->info.levels, b->info.levels);
+    for (int l = 0; l < a->info.levels; l++) {
+        int width = level_size(a->info.width, l) + 1, height = level_size(a->info.height, l) + 1;
+        size_t bytes = (size_t)(before + width) * (size_t)storage_words(a->storage) * sizeof(uint32_t);
+        for (int z = 0; z < level_slices(&a->info, l); z++)
+            for (int y = -before; y < height; y++)
+                assert_memory_equal(texel_at(a, l, -before, y, z), texel_at(b, l, -before, y, z), bytes);
+    }
+}
+
 /* A texture that was rendered into equals, words and borders, one made of the same pixels. */
 static void borders_and_mips_follow(void **state)
 {
@@ -354,8 +368,7 @@ static void borders_and_mips_follow(void **state)
             assert_int_equal(amb_texture_cube_from_images(face, texels[i / 2], true, &made, NULL), AMB_OK);
         else
             assert_int_equal(amb_texture_from_image(face[0], texels[i / 2], true, &made, NULL), AMB_OK);
-        assert_int_equal(made->words, drawn->words);
-        assert_memory_equal(made->data, drawn->data, made->words * sizeof *made->data);
+        assert_same_texels(drawn, made);
         for (int k = 0; k < 6; k++)
             amb_image_close(&face[k]);
         amb_texture_close(&drawn);

@@ -1,0 +1,225 @@
+/* Small triangles, up to AMB_LANES of a draw together. Each has few quads in its box; all their quads are written in a
+ * row, triangle by triangle, and taken RASTER_QUADS at a time: a lane is a pixel with the numbers of its own triangle.
+ * So lanes are not wasted on a block around every triangle, and what a triangle costs alone is next to nothing.
+ *
+ * Values are those of coverage.h and fragment.h to the last bit. Part of tile_wide.c. */
+#ifndef AMBIANCE_RASTER_SMALL_H
+#define AMBIANCE_RASTER_SMALL_H
+
+#include "raster/coverage.h"
+
+#if AMB_LANES > 4
+
+typedef struct small_group {
+    i32x c[3], a[3], b[3]; /* edge functions, from the tile's first pixel */
+    f32x bias[3], inverse_area;
+    f32x z0, dz1, dz2, inverse_w[3], depth_bias;
+    i32x primitive_front;
+    const float *varying[3][AMB_LANES];
+    int count;                                                                 /* quads */
+    int32_t quad[AMB_LANES * RASTER_SMALL_BOX * RASTER_SMALL_BOX + AMB_LANES]; /* triangle | x << 8 | y << 16, pixels */
+} small_group;
+
+/* The quads that a triangle's box touches inside the tile, first and last. */
+typedef struct quad_box {
+    i32x x0, y0, x1, y1;
+} quad_box;
+
+static inline quad_box quads_in_tile(const raster_tile *tile, const edge_group *g)
+{
+    i32x low = i_load((const int32_t *)(const void *)g->low), high = i_load((const int32_t *)(const void *)g->high);
+    const i32x side = i_set(tile->pass->tile_size - 1), zero = i_set(0);
+    return (quad_box){i_max((low & 0xffff) - tile->x0, zero) >> 1, i_max((low >> 16 & 0xffff) - tile->y0, zero) >> 1,
+                      i_min((high & 0xffff) - tile->x0, side) >> 1, i_min((high >> 16 & 0xffff) - tile->y0, side) >> 1};
+}
+
+/* Which triangles of the group are played here? */
+static inline uint32_t find_small(const raster_tile *tile, const raster_chunk *chunk, const edge_group *g)
+{
+    if (chunk->draw->lines || chunk->draw->points || tile->pass->samples > 1)
+        return 0;
+    quad_box box = quads_in_tile(tile, g);
+    i32x width = box.x1 - box.x0, height = box.y1 - box.y0;
+    return g->small & m_bits((width >= 0) & (height >= 0) & (width < RASTER_SMALL_BOX) & (height < RASTER_SMALL_BOX));
+}
+
+/* Window depth and 1/w of the triangles, as prepare_shading makes them. */
+static inline void prepare_group(raster_shading *s, const edge_group *g, small_group *m, int first, int end)
+{
+    const raster_chunk *chunk = s->chunk;
+    const float *records = (const float *)(const void *)chunk->vertex;
+    f32x z[3], w[3];
+    for (int i = 0; i < 3; i++) {
+        i32x at = i_load((const int32_t *)(const void *)g->number[i]) * (int32_t)chunk->stride;
+        z[i] = f_gather(records, at);
+        w[i] = f_gather(records + 1, at);
+    }
+    m->z0 = z[0], m->dz1 = z[1] - z[0], m->dz2 = z[2] - z[0];
+    f32x scale = f_from_bits((254 << 23) - (f_bits(f_max(w[0], f_max(w[1], w[2]))) & 0x7f800000));
+    for (int i = 0; i < 3; i++)
+        m->inverse_w[i] = w[i] * scale;
+    m->depth_bias = f_set(0.0f);
+    if (s->draw->depth_bias == 0.0f && s->draw->depth_bias_slope == 0.0f)
+        return;
+    float bias[AMB_LANES] = {0};
+    for (int n = first; n < end; n++) {
+        for (int i = 0; i < 3; i++)
+            s->number[i] = g->number[i][n];
+        s->inverse_area = g->inverse_area[n];
+        prepare_shading(s);
+        bias[n] = s->bias;
+    }
+    m->depth_bias = f_load(bias);
+}
+
+/* Edges move their origin to the tile's first pixel; they stay far inside 32 bits. */
+static inline void gather_edges(const raster_tile *tile, const edge_group *g, small_group *m)
+{
+    i32x low = i_load((const int32_t *)(const void *)g->low);
+    i32x x = box_origin(low & 0xffff, tile->x0, AMB_BLOCK_W) - tile->x0,
+         y = box_origin(low >> 16 & 0xffff, tile->y0, AMB_BLOCK_H) - tile->y0;
+    for (int i = 0; i < 3; i++) {
+        m->a[i] = i_load(g->a[i]), m->b[i] = i_load(g->b[i]);
+        m->c[i] = i_load(g->c[i]) - m->a[i] * x - m->b[i] * y;
+        m->bias[i] = f_load(g->bias[i]);
+    }
+    m->inverse_area = f_load(g->inverse_area);
+    m->primitive_front = i_load((const int32_t *)(const void *)g->primitive_front);
+}
+
+/* Writes the quads of triangles first…end-1 in a row. */
+static inline void list_quads(const raster_tile *tile, const edge_group *g, small_group *m, int first, int end)
+{
+    quad_box box = quads_in_tile(tile, g);
+    i32x width = box.x1 - box.x0, height = box.y1 - box.y0;
+    int32_t corner[AMB_LANES], shape[AMB_LANES], quads[AMB_LANES];
+    i_store(corner, i_lane_index() | (box.x0 << 9) | (box.y0 << 17));
+    i_store(shape, width + height * RASTER_SMALL_BOX);
+    i_store(quads, (width + 1) * (height + 1));
+    m->count = 0;
+    for (int n = first; n < end; n++) { /* whole boxes are written, the next begins where this one's quads end */
+        const int32_t *offset = tile->boxes[shape[n]];
+        for (int k = 0; k < RASTER_SMALL_BOX * RASTER_SMALL_BOX; k += AMB_LANES)
+            i_store(m->quad + m->count + k, i_load(offset + k) + corner[n]);
+        m->count += quads[n];
+    }
+    i_store(m->quad + m->count, i_set(first)); /* whatever follows is a quad of some triangle */
+}
+
+/* Where the lanes' quads lie in the tile. */
+static inline void locate_quads(const raster_tile *tile, i32x x, i32x y, raster_quads *q)
+{
+#if AMB_LANES == 16
+    i32x block = (y >> 2) * tile->blocks_x + (x >> 2), quad = (y & 2) | (x >> 1 & 1);
+#else
+    i32x block = (y >> 1) * tile->blocks_x + (x >> 2), quad = x >> 1 & 1;
+#endif
+    int32_t index[AMB_LANES], offset[AMB_LANES];
+    i_store(index, block * RASTER_QUADS + quad);
+    i_store(offset, block * (block_planes(tile) * AMB_LANES) + quad * 4);
+    for (int i = 0; i < RASTER_QUADS; i++) {
+        q->index[i] = (uint16_t)index[4 * i];
+        q->at.quad[i] = tile->data + offset[4 * i];
+    }
+}
+
+/* The quads from `first` on whose covered pixels are not waiting, in the queue or before them in the row: their lanes.
+ * Marks the live ones as waiting. */
+static inline uint32_t take_quads(raster_queue *queue, const raster_quads *q, uint32_t covered, uint32_t live)
+{
+    for (int i = 0; i < RASTER_QUADS; i++) {
+        uint8_t *waiting = &queue->waiting[q->index[i]];
+        if ((*waiting & covered >> 4 * i & 15u) != 0)
+            return (1u << 4 * i) - 1u;
+        *waiting |= (uint8_t)(live >> 4 * i & 15u);
+    }
+    return AMB_ALL_LANES;
+}
+
+/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. */
+static inline void play_quads(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, const raster_quads *q,
+                              maskx cover)
+{
+    const bool late = tests_late(draw);
+    const maskx front = q->primitive_front < 0;
+    for (uint32_t covered = m_bits(cover), taken; covered != 0; covered &= ~taken) {
+        cover = m_from_bits(covered);
+        uint32_t live = covered;
+        if (draw->fragment && !late)
+            live &= m_bits(output_tests(tile, draw, &q->at, 0, front, q->depth, true));
+        taken = take_quads(queue, q, covered, live);
+        live &= taken;
+        if (!draw->fragment) {
+            update_depth_stencil(tile, draw, &q->at, 0, front, q->depth, m_from_bits(live), true);
+            for (int i = 0; i < RASTER_QUADS; i++)
+                queue->waiting[q->index[i]] = 0;
+        } else if (live != 0) {
+            queue_quads(tile, queue, q, live);
+        }
+        if (taken != AMB_ALL_LANES)
+            flush_queue(tile, queue);
+    }
+}
+
+/* RASTER_QUADS of the row, from `first` on. */
+static inline void play_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, const small_group *m,
+                            int first)
+{
+    i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2), triangle = quad & 255;
+    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16) + (i_lane_index() >> 1 & 1);
+    i32x e[3];
+    for (int i = 0; i < 3; i++)
+        e[i] = permute_i(m->c[i], triangle) + permute_i(m->a[i], triangle) * x + permute_i(m->b[i], triangle) * y;
+    maskx cover = ((e[0] | e[1] | e[2]) >= 0) & (i_lane_index() < 4 * (m->count - first));
+    if (tile->clipped)
+        cover &= (x >= tile->clip_x0) & (x < tile->clip_x1) & (y >= tile->clip_y0) & (y < tile->clip_y1);
+    if (!m_any(cover))
+        return;
+    raster_quads q;
+    f32x weight[3];
+    for (int i = 0; i < 3; i++) {
+        weight[i] = i_to_f(e[i]) + permute(m->bias[i], triangle);
+        q.p[i] = weight[i] * permute(m->inverse_w[i], triangle);
+    }
+    f32x inverse_area = permute(m->inverse_area, triangle);
+    q.depth = f_saturate(((permute(m->z0, triangle) + permute(m->dz1, triangle) * (weight[1] * inverse_area)) +
+                          permute(m->dz2, triangle) * (weight[2] * inverse_area)) +
+                         permute(m->depth_bias, triangle));
+    q.position = (x + tile->x0) | ((y + tile->y0) << 16);
+    q.primitive_front = permute_i(m->primitive_front, triangle);
+    for (int i = 0; i < RASTER_QUADS; i++)
+        for (int k = 0; k < 3; k++)
+            q.varying[k][i] = m->varying[k][m->quad[first + i] & 255];
+    locate_quads(tile, x, y, &q);
+    play_quads(tile, draw, queue, &q, cover);
+}
+
+/* Triangles first…end-1 of the group, all of them small. */
+static void play_small(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *g, int first,
+                       int end)
+{
+    small_group m;
+    gather_edges(tile, g, &m);
+    prepare_group(s, g, &m, first, end);
+    for (int k = 0; k < 3; k++)
+        for (int n = 0; n < AMB_LANES; n++)
+            m.varying[k][n] = raster_vertex_at(s->chunk, g->number[k][n])->varying;
+    list_quads(tile, g, &m, first, end);
+    for (int i = 0; i < m.count; i += RASTER_QUADS)
+        play_row(tile, s->draw, queue, &m, i);
+}
+
+#else
+static inline uint32_t find_small(const raster_tile *tile, const raster_chunk *chunk, const edge_group *g)
+{
+    (void)tile, (void)chunk, (void)g;
+    return 0;
+}
+static inline void play_small(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *g,
+                              int first, int end)
+{
+    (void)tile, (void)s, (void)queue, (void)g, (void)first, (void)end;
+}
+#endif
+
+#endif
