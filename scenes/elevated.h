@@ -14,7 +14,7 @@ typedef enum elevated_normals { NORMALS_ANALYTIC, NORMALS_CENTRAL } elevated_nor
 typedef enum elevated_shadows { SHADOWS_MARCH, SHADOWS_ESTIMATE, SHADOWS_OFF } elevated_shadows;
 
 typedef struct elevated_params {
-    float sun_azimuth, sun_elevation, turbidity, sun_size, exposure, balance; /* light */
+    float sun_azimuth, sun_elevation, turbidity, sun_size, exposure, adaptation, balance; /* light */
     float fog_density, fog_falloff;
     v3 fog_color;
     float height, erosion; /* ground */
@@ -66,7 +66,7 @@ typedef struct elevated_uniforms {
     amb_terrain ground, speckle; /* speckle: the noise of snow and ambient light, snow_scale times as fine */
     amb_sky sky;
     elevated_texture rock, snow;
-    v3 sun_rgb, ambient_rgb, back_rgb; /* light on white, times exposure */
+    v3 sun_rgb, ambient_rgb, back_rgb, haze_rgb; /* light on white, times exposure */
     v3 to_back;
     float sun_cosine; /* of the disc's radius */
     v3 gain;          /* exposure and white balance */

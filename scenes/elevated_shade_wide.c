@@ -183,7 +183,8 @@ typedef struct elevated_fog {
     f32x depth;
 } elevated_fog;
 
-/* Haze between the eye and a point: it takes away by wavelength and adds the horizon's light. */
+/* Haze between the eye and a point: it takes away by wavelength, and adds light: of the whole sky while it is thin, of
+ * the horizon behind it as it thickens, so that the farthest ground meets the sky. */
 AMB_INLINE elevated_fog ground_fog(const elevated_uniforms *u, v3x world)
 {
     const elevated_params *s = u->params;
@@ -194,7 +195,8 @@ AMB_INLINE elevated_fog ground_fog(const elevated_uniforms *u, v3x world)
     fog.depth = fog_depth(f_set(u->eye.y), direction.y, distance, s->fog_density, s->fog_falloff);
     fog.transmit = (v3x){f_exp(-fog.depth * s->fog_color.x), f_exp(-fog.depth * s->fog_color.y),
                          f_exp(-fog.depth * s->fog_color.z)};
-    fog.light = v3x_mul(sky_horizon_rgb(&u->sky, direction), v3x_splat(u->gain));
+    v3x horizon = v3x_mul(sky_horizon_rgb(&u->sky, direction), v3x_splat(u->gain));
+    fog.light = v3x_lerp(v3x_splat(u->haze_rgb), horizon, 1.0f - f_exp(-fog.depth));
     return fog;
 }
 

@@ -22,11 +22,12 @@ static const amb_param elevated_table[] = {
     ROW(sun_elevation, FLOAT, "degrees", -90, 90, "its height; dawn is below 8", 18),
     ROW(turbidity, FLOAT, "", 1.7f, 10, "haze of the sky: 2 mountain air, 4 a clear day, 8 thick", 2.3f),
     ROW(sun_size, FLOAT, "degrees", 0.05f, 10, "radius of the sun's disc", 0.5f),
-    ROW(exposure, FLOAT, "per kcd/m2", 0, 10, "factor from the sky's luminance to the picture's", 0.055f),
-    ROW(balance, FLOAT, "", 0, 1, "white balance: 0 daylight (D65), 1 what level snow reflects is neutral", 0.6f),
-    ROW(fog_density, FLOAT, "per cell", 0, 100, "a of the haze a e^(-b y)", 0.12f),
+    ROW(exposure, FLOAT, "per kcd/m2", 0, 10, "factor from the luminance to the picture's, where level snow has 12 kcd/m2", 0.055f),
+    ROW(adaptation, FLOAT, "", 0, 1, "of the exposure: 0 fixed, 1 level snow is equally bright under any sun", 0.35f),
+    ROW(balance, FLOAT, "", 0, 1, "white balance: 0 daylight (D65), 1 what level snow reflects is neutral", 0.35f),
+    ROW(fog_density, FLOAT, "per cell", 0, 100, "a of the haze a e^(-b y)", 0.13f),
     ROW(fog_falloff, FLOAT, "per cell", 0, 100, "b", 3.0f),
-    ROW(fog_color, COLOR, "", 0, 10, "how strongly it dims red, green, blue", 0.5f, 0.9f, 1.7f),
+    ROW(fog_color, COLOR, "", 0, 10, "how strongly it dims red, green, blue", 0.6f, 0.95f, 1.5f),
     ROW(height, FLOAT, "cells", 0.01f, 4, "factor on the height function", 0.42f),
     ROW(erosion, FLOAT, "", 0, 10, "factor on the squared slope that flattens finer octaves; 0: plain fBm", 1),
     ROW(turned, BOOL, "", 0, 0, "turn each octave by 36.87 degrees; off: f(2^i p) as the report writes it", 1),
@@ -44,7 +45,7 @@ static const amb_param elevated_table[] = {
     ROW(shadow_size, FLOAT, "degrees", 0.01f, 20, "apparent radius of the sun: softness of the shadows", 0.5f),
     ROW(occlusion_power, FLOAT, "", 0.01f, 20, "k of the ambient occlusion n_y^k + a", 1.6f),
     ROW(occlusion_floor, FLOAT, "", 0, 2, "a", 0.18f),
-    ROW(ambient, FLOAT, "", 0, 10, "factor on the sky's light", 0.6f),
+    ROW(ambient, FLOAT, "", 0, 10, "factor on the sky's light", 0.55f),
     ROW(ambient_noise, FLOAT, "", 0, 2, "noise in it", 0.18f),
     ROW(back, FLOAT, "", 0, 10, "strength of the light from against the sun", 0.12f),
     ROW(back_color, COLOR, "", 0, 10, "its colour", 0.35f, 0.55f, 1.0f),
@@ -53,7 +54,7 @@ static const amb_param elevated_table[] = {
     EDGE(snow_c, c, "C", 1.85f),
     EDGE(snow_d, d, "D", 1.8f),
     EDGE(snow_e, e, "E", 0.55f),
-    ROW(snow_height, FLOAT, "", -10, 10, "what height adds to the noise, for height 1 of the height function", 1.3f),
+    ROW(snow_height, FLOAT, "", -10, 10, "what height adds to the noise, for height 1 of the height function", 1.8f),
     ROW(snow_scale, FLOAT, "per cell", 0.1f, 1000, "coarsest frequency of that noise", 6),
     ROW(snow_color, COLOR, "", 0, 1, "albedo of snow", 0.86f, 0.90f, 0.95f),
     ROW(land_color, COLOR, "", 0, 1, "albedo of rock", 0.145f, 0.135f, 0.128f),
@@ -127,6 +128,18 @@ static v3 direction_of(float azimuth, float elevation)
     return (v3){amb_cos(e) * amb_sin(a), amb_sin(e), amb_cos(e) * amb_cos(a)};
 }
 
+/* Exposure and white balance: both follow the light on level snow. */
+static v3 exposure_of(const elevated_params *p, const amb_sky *sky)
+{
+    v3 level = v3_add(sky->ambient_rgb, v3_scale(sky->sun_rgb, amb_s_max(sky->to_sun.y, 0.0f)));
+    float grey = amb_s_max(v3_dot(level, (v3){0.2126f, 0.7152f, 0.0722f}), 1.0e-6f);
+    float gain = p->exposure * amb_pow(12.0f / grey, p->adaptation);
+    v3 share = {grey / amb_s_max(level.x, 1.0e-6f), grey / amb_s_max(level.y, 1.0e-6f),
+                grey / amb_s_max(level.z, 1.0e-6f)};
+    return (v3){gain * amb_pow(share.x, p->balance), gain * amb_pow(share.y, p->balance),
+                gain * amb_pow(share.z, p->balance)};
+}
+
 static elevated_uniforms uniforms_of(const elevated_state *state, const elevated_params *p, const amb_canvas *canvas,
                                      const elevated_place *place, const amb_camera *camera)
 {
@@ -144,11 +157,9 @@ static elevated_uniforms uniforms_of(const elevated_state *state, const elevated
     amb_terrain_place(&u.ground, &state->noise, (uint32_t)p->seed, p->erosion, p->turned != 0, place->x, place->z);
     amb_terrain_place(&u.speckle, &state->noise, (uint32_t)p->seed + 99u, 0.0f, p->turned != 0, place->x, place->z);
     u.sky = amb_sky_make(direction_of(p->sun_azimuth, p->sun_elevation), p->turbidity);
-    v3 level = v3_add(u.sky.ambient_rgb, v3_scale(u.sky.sun_rgb, amb_s_max(u.sky.to_sun.y, 0.0f)));
-    float grey = 0.2126f * level.x + 0.7152f * level.y + 0.0722f * level.z;
-    u.gain = (v3){p->exposure * amb_pow(grey / level.x, p->balance), p->exposure * amb_pow(grey / level.y, p->balance),
-                  p->exposure * amb_pow(grey / level.z, p->balance)};
+    u.gain = exposure_of(p, &u.sky);
     u.sun_rgb = v3_mul(u.sky.sun_rgb, u.gain);
+    u.haze_rgb = v3_mul(u.sky.ambient_rgb, u.gain);
     u.ambient_rgb = v3_mul(u.sky.ambient_rgb, v3_scale(u.gain, p->ambient));
     u.back_rgb = v3_scale(p->back_color, p->back * v3_dot(u.ambient_rgb, (v3){0.2126f, 0.7152f, 0.0722f}));
     u.to_back = v3_normalize((v3){-u.sky.to_sun.x, 0.35f, -u.sky.to_sun.z});

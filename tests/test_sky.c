@@ -23,8 +23,7 @@ static v3 sun_at(double height, double azimuth) /* degrees */
     return (v3){(float)(cos(h) * sin(a)), (float)sin(h), (float)(cos(h) * cos(a))};
 }
 
-/* ---- the paper, appendix A.2, written out
- * ---------------------------------------------------------------------------- */
+/* ---- the paper, appendix A.2, written out ------------------------------------------------------------------------ */
 
 typedef struct perez {
     double a, b, c, d, e;

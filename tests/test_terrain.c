@@ -23,8 +23,7 @@ static float random_in(uint64_t *state, float lo, float hi)
     return lo + (hi - lo) * (float)(lanes_random(state) >> 40) * 0x1p-24f;
 }
 
-/* ---- the definitions, in double ------------------------------------------------------------------------------------
- */
+/* ---- the definitions, in double -------------------------------------------------------------------------------- */
 
 static double texel(const amb_noise_texture *noise, int64_t x, int64_t y)
 {
@@ -76,8 +75,7 @@ static double height_at(const amb_terrain *t, double px, double py, int octaves)
     return z;
 }
 
-/* ---- noise ----------------------------------------------------------------------------------------------------------
- */
+/* ---- noise ----------------------------------------------------------------------------------------------------- */
 
 static void noise_is_the_texture_interpolated(void **state)
 {
@@ -159,8 +157,7 @@ static void texture_is_white(void **state)
     near(along / 65536, 0, 5.0 / 3 / 256);
 }
 
-/* ---- height
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- height ------------------------------------------------------------------------------------------------------ */
 
 static void heights_match_the_formula(void **state)
 {
@@ -278,8 +275,7 @@ static void octaves_fade_in(void **state)
     assert_memory_equal(&coarse, &fine, sizeof fine);
 }
 
-/* ---- endless flight
- * ----------------------------------------------------------------------------------------------------- */
+/* ---- endless flight ---------------------------------------------------------------------------------------------- */
 
 /* The report's own, unturned: the same place reached from another base gives the same bits (p exact in both). */
 static void another_base_same_bits(void **state)
@@ -347,8 +343,7 @@ static void origins_are_exact(void **state)
     }
 }
 
-/* ---- shading
- * ------------------------------------------------------------------------------------------------------------ */
+/* ---- shading ----------------------------------------------------------------------------------------------------- */
 
 static void ground_shading_follows_the_report(void **state)
 {
@@ -401,8 +396,7 @@ static void shadows_agree_with_a_dense_march(void **state)
     assert_true(terrain_sunlight(t, &m, (v2x){0, 0}, 0.9f, (v3){0.8f, -0.6f, 0.0f}, 5.0f) == 0.0f);
 }
 
-/* ---- widths
- * ------------------------------------------------------------------------------------------------------------- */
+/* ---- widths ------------------------------------------------------------------------------------------------------ */
 
 static void fill(const lanes_case *test, int input, float *out, size_t count)
 {
