@@ -20,13 +20,13 @@
 #include <ambiance/raster.h>
 #include <ambiance/scene.h>
 
-#define HILL_SIZE 2048.0f  /* side of the height map */
-#define HILL_SEA 0.25f     /* the height map's value at y = 0 */
-#define HILL_PATCHES 128   /* along a side: 16 units each */
-#define WATER_CELLS 64     /* along a side, the outer ones ever wider */
-#define WATER_CELL 64.0f   /* of the inner ones */
-#define HILL_SECONDS 90.0f /* of the flight */
-enum { HILL_PANORAMA_WIDTH = 768, HILL_PANORAMA_HEIGHT = 192 };
+#define HILL_SIZE 2048.0f            /* side of the height map */
+#define HILL_SEA 0.25f               /* the height map's value at y = 0 */
+#define HILL_PATCHES 128             /* along a side: 16 units each */
+#define WATER_CELLS 64               /* along a side, the outer ones ever wider */
+#define WATER_CELL 64.0f             /* of the inner ones */
+#define HILL_SECONDS 90.0f           /* of the flight */
+enum { HILL_PANORAMA_HEIGHT = 192 }; /* at most; four times as wide */
 
 enum { BRDF_BLINN_PHONG, BRDF_COOK_TORRANCE };
 enum { WAVES_OF_SINES, WAVES_OF_NOISE };
@@ -94,7 +94,7 @@ typedef struct hill_state {
     const amb_texture *trees, *tree_normals, *blades; /* atlases */
     v2 *corner;                                       /* of the terrain's patches: (HILL_PATCHES + 1)² */
     uint32_t *patch;                                  /* 4 · HILL_PATCHES² */
-    v2 *bounds;                                       /* least and most height of each patch, 0…1 */
+    v2 *bounds; /* least and most height of the patch whose first corner it is, 0…1 */
     v2 *water_corner;
     uint32_t *water_patch;
     hill_plant *plant;
@@ -104,11 +104,14 @@ typedef struct hill_state {
 
 amb_status hill_load(const amb_context *context, amb_assets *assets, void **state, amb_error *error);
 void hill_unload(void *state);
+/* The patches' corners, nearest patch first: less is shaded that something hides later. Room for 4 · HILL_PATCHES². */
+void hill_sort_patches(const hill_state *state, v3 eye, uint32_t *near_to_far);
 
 /* One frame: what every pass of it shares. */
 typedef struct hill_frame {
     hill_params p;
     const hill_state *state;
+    const uint32_t *patch; /* the state's, nearest first */
     amb_camera camera;
     double time;
     float seconds; /* the time folded to 4096 s: for motion that may start over */

@@ -99,7 +99,7 @@ static void bounds_row(void *user, int row, int thread)
                 b.x = v < b.x ? v : b.x;
                 b.y = v > b.y ? v : b.y;
             }
-        job->state->bounds[row * HILL_PATCHES + i] = b;
+        job->state->bounds[row * (HILL_PATCHES + 1) + i] = b;
     }
 }
 
@@ -110,7 +110,7 @@ static amb_status use_heights(const amb_context *context, hill_state *s, amb_ima
     if (info.width < 2 || info.height < 2)
         return amb_fail(error, AMB_ERROR_FORMAT, "hills/height: %d×%d texels; at least 2×2 are needed", info.width,
                         info.height);
-    s->bounds = malloc(HILL_PATCHES * HILL_PATCHES * sizeof *s->bounds);
+    s->bounds = calloc((HILL_PATCHES + 1) * (HILL_PATCHES + 1), sizeof *s->bounds);
     if (!s->bounds)
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for the bounds of scene hillscape");
     amb_status status = amb_texture_to_image(s->height, 0, 0, height, error);
@@ -124,6 +124,24 @@ static amb_status use_heights(const amb_context *context, hill_state *s, amb_ima
     }
     amb_image_close(&job.slope);
     return status;
+}
+
+void hill_sort_patches(const hill_state *s, v3 eye, uint32_t *near_to_far)
+{
+    enum { PATCHES = HILL_PATCHES * HILL_PATCHES, STEPS = 1024 };
+    uint32_t first[STEPS + 1] = {0};
+    uint16_t step[PATCHES];
+    for (int i = 0; i < PATCHES; i++) { /* a counting sort by distance, in steps of 4 m */
+        v2 corner = s->corner[s->patch[4 * i]];
+        float dx = corner.x + 8.0f - eye.x, dz = corner.y + 8.0f - eye.z;
+        float distance = f_min(f_sqrt(dx * dx + dz * dz) * 0.25f, (float)(STEPS - 1));
+        step[i] = (uint16_t)distance;
+        first[step[i] + 1]++;
+    }
+    for (int i = 0; i < STEPS; i++)
+        first[i + 1] += first[i];
+    for (int i = 0; i < PATCHES; i++)
+        memcpy(near_to_far + 4 * first[step[i]]++, s->patch + 4 * i, 4 * sizeof *near_to_far);
 }
 
 /* ---- plants -------------------------------------------------------------------------------------------------------

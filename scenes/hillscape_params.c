@@ -26,7 +26,7 @@ const amb_param hill_param_rows[HILL_PARAM_COUNT] = {
     FLOAT(relief, "m", 0, 2000, 300, "height of a height map value of 1"),
     FLOAT(snow_line, "m", -1000, 3000, 118, "height above which snow lies"),
     FLOAT(tess_min, "", 1, 64, 2, "least tessellation factor"),
-    FLOAT(tess_max, "", 1, 64, 24, "most; the factor is 64 - distance/8 between them"),
+    FLOAT(tess_max, "", 1, 64, 10, "most; the factor is 64 - distance/8 between them"),
     CHOICE(partitioning, 2, partitionings, "how patches are divided: whole steps, or continuous in odd or even ones"),
     FLOAT(wave_height, "m", 0, 20, 0.07f, "height of the main wave"),
     FLOAT(wave_frequency, "rad/m", 0.001f, 20, 0.55f, "of the main wave"),

@@ -58,9 +58,9 @@ static v3x sky_light(const hill_pass *pass, v3x direction, f32x *cover)
 static void panorama_fragment(const amb_fs_in *in, amb_fs_out *out)
 {
     const hill_pass *pass = in->uniforms;
-    f32x y = 1.0f - in->y * (HILL_PANORAMA_RANGE / (float)HILL_PANORAMA_HEIGHT);
+    f32x y = 1.0f - in->y * (HILL_PANORAMA_RANGE / (float)pass->height);
     f32x sine, cosine, ring = f_sqrt(f_max(1.0f - y * y, f_set(0.0f)));
-    f_sincos((in->x * (1.0f / (float)HILL_PANORAMA_WIDTH) - 0.5f) * (2.0f * AMB_PI), &sine, &cosine);
+    f_sincos((in->x * (0.25f / (float)pass->height) - 0.5f) * (2.0f * AMB_PI), &sine, &cosine);
     f32x cover;
     v3x light = sky_light(pass, (v3x){sine * ring, y, -(cosine * ring)}, &cover);
     out->color[0] = v4x_of3(light, f_set(1.0f));

@@ -26,7 +26,7 @@ static void terrain_hull(const amb_hs_in *in, amb_hs_out *out)
     }
     v2x centre = v2x_scale(v2x_add(c[0], c[2]), f_set(0.5f));
     out->inside[0] = out->inside[1] = hill_tessellation(f->camera.position, on_ground(f, centre), least, most);
-    v2x bounds = v2x_gather(f->state->bounds, in->patch);
+    v2x bounds = v2x_gather(f->state->bounds, in->corner[0]);
     v3x low = {c[0].x, (bounds.x - HILL_SEA) * f->p.relief, c[0].y};
     v3x high = {c[2].x, (bounds.y - HILL_SEA) * f->p.relief, c[2].y};
     maskx seen = hill_box_seen(pass, low, high);
@@ -209,7 +209,7 @@ amb_draw hill_terrain_draw(const hill_pass *pass)
                                            .partitioning = (amb_partitioning)f->p.partitioning};
     draw.fragment = pass->depth_only ? NULL : terrain_fragment;
     draw.varying_floats = sizeof(terrain_varyings) / sizeof(f32x);
-    draw.indices = f->state->patch;
+    draw.indices = f->patch;
     draw.count = 4 * HILL_PATCHES * HILL_PATCHES;
     draw.vertex_count = (HILL_PATCHES + 1) * (HILL_PATCHES + 1);
     draw.cull = AMB_CULL_NONE;

@@ -5,6 +5,7 @@
 #include <ambiance/post.h>
 
 #include <stdio.h>
+#include <stdlib.h>
 
 /* ---- camera -------------------------------------------------------------------------------------------------------
  */
@@ -112,10 +113,11 @@ static amb_status draw_texture(const amb_context *context, hill_textures *textur
     return status;
 }
 
-static amb_status make_panorama(const amb_context *context, hill_frame *f, hill_textures *textures, amb_error *error)
+static amb_status make_panorama(const amb_scene_job *job, hill_frame *f, hill_textures *textures, amb_error *error)
 {
-    hill_pass view = hill_pass_make(f, f->camera.world_to_clip, f->camera.position, HILL_PANORAMA_HEIGHT);
-    return draw_texture(context, textures, &view, HILL_PANORAMA_WIDTH, hill_draw_panorama, false, &f->panorama, error);
+    int height = job->height / 4 < HILL_PANORAMA_HEIGHT ? job->height / 4 + 8 : HILL_PANORAMA_HEIGHT;
+    hill_pass view = hill_pass_make(f, f->camera.world_to_clip, f->camera.position, height);
+    return draw_texture(job->context, textures, &view, 4 * height, hill_draw_panorama, false, &f->panorama, error);
 }
 
 /* The scene as the water mirrors it, at half size. */
@@ -198,29 +200,39 @@ static amb_status bloom(const amb_scene_job *job, const hill_params *p, amb_erro
     return status;
 }
 
+static amb_status draw_passes(const amb_scene_job *job, hill_frame *f, hill_textures *textures, amb_error *error)
+{
+    amb_status status = make_panorama(job, f, textures, error);
+    if (status == AMB_OK)
+        status = hill_shadows_make(job->context, job->height, f, textures, error);
+    if (status == AMB_OK && f->p.mirror && f->p.water)
+        status = make_mirror(job, f, textures, error);
+    if (status == AMB_OK)
+        status = draw_color(job, f, error);
+    if (status == AMB_OK)
+        status = draw_outputs(job, f, error);
+    return status == AMB_OK ? bloom(job, &f->p, error) : status;
+}
+
 static amb_status hill_frame_draw(const void *state, const amb_scene_job *job, amb_error *error)
 {
     hill_frame f = {.p = *(const hill_params *)job->params, .state = state, .time = job->time};
     hill_textures textures = {.count = 0};
+    uint32_t *patch = malloc(4 * HILL_PATCHES * HILL_PATCHES * sizeof *patch);
+    if (!patch)
+        return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for a frame of scene hillscape");
     f.seconds = loop_time(job->time, 4096.0);
     f.camera = camera_at(&f, job);
     f.pixel = 2.0f * f_lane(f_tan(f_set(0.5f * f.camera.vertical_fov)), 0) / (float)job->height;
+    hill_sort_patches(state, f.camera.position, patch);
+    f.patch = patch;
     hill_lights_make(&f);
     for (int i = 0; i < FIRE_PARTICLES; i++)
         f.particle[i] = fire_particle_at(i, job->time);
-    amb_status status = make_panorama(job->context, &f, &textures, error);
-    if (status == AMB_OK)
-        status = hill_shadows_make(job->context, job->height, &f, &textures, error);
-    if (status == AMB_OK && f.p.mirror && f.p.water)
-        status = make_mirror(job, &f, &textures, error);
-    if (status == AMB_OK)
-        status = draw_color(job, &f, error);
-    if (status == AMB_OK)
-        status = draw_outputs(job, &f, error);
-    if (status == AMB_OK)
-        status = bloom(job, &f.p, error);
+    amb_status status = draw_passes(job, &f, &textures, error);
     for (int i = 0; i < textures.count; i++)
         amb_texture_close(&textures.made[i]);
+    free(patch);
     return status;
 }
 

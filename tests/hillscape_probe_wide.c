@@ -4,7 +4,7 @@
 
 static hill_frame frame_of(const hill_probe *probe)
 {
-    hill_frame f = {.p = *probe->params, .state = probe->state};
+    hill_frame f = {.p = *probe->params, .state = probe->state, .patch = probe->state->patch};
     f.camera =
         amb_camera_look(probe->eye, v3_add(probe->eye, (v3){0, -0.2f, -1}), (v3){0, 1, 0}, 0.8f, 0.5f, 5000.0f, 64, 64);
     hill_lights_make(&f);
