@@ -78,6 +78,8 @@ enum {
 enum { ID_TERRAIN = 1, ID_WATER, ID_SPHERE, ID_TREE, ID_GRASS, ID_PARTICLE };
 
 extern const amb_aov hill_aovs[HILL_AOVS];
+enum { HILL_FLIGHT_KEYS = 7 };
+extern const amb_camera_key hill_flight[HILL_FLIGHT_KEYS];
 enum { HILL_PARAM_COUNT = 54 };
 extern const amb_param hill_param_rows[HILL_PARAM_COUNT];
 

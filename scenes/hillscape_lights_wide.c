@@ -57,7 +57,12 @@ static void make_sun(hill_frame *f)
     v3 level = v3_add(v3_scale(sun, amb_s_max(to_sun.y, 0.0f)), sky);
     f->sky_light[0] = sky;
     f->sky_light[1] = v3_add(scaled_color(level, ground, 1.0f), v3_scale(sky, 0.12f));
-    f->haze_rgb = v3_scale(sky, 0.06f); /* of the sky above; the horizon's is added by direction */
+    v3x around = {f_set(0.0f), f_set(0.0f), f_set(0.0f)};
+    for (int i = 0; i < 4; i++)
+        around = v3x_add(around, sky_horizon_rgb(&f->sky, (v3x){f_set((float)(i == 0) - (float)(i == 1)), f_set(0.0f),
+                                                                f_set((float)(i == 2) - (float)(i == 3))}));
+    /* Of all sides; that of the direction looked in is added there. */
+    f->haze_rgb = v3_add(v3_scale(v3x_lane(around, 0), 0.25f * 0.36f * f->gain), v3_scale(sky, 0.08f));
 }
 
 void hill_lights_make(hill_frame *f)

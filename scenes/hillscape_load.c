@@ -7,7 +7,7 @@ static const amb_material materials[GROUND_COUNT] = {
     [GROUND_SAND] =
         {.asset = "ground/sand", .size = 9.0f, .bump = 0.35f, .roughness = 0.55f, .f0 = 0.03f, .tint = {1, 1, 1}},
     [GROUND_GRASS] =
-        {.asset = "ground/grass", .size = 7.0f, .bump = 0.8f, .roughness = 0.6f, .f0 = 0.03f, .tint = {1, 1, 1}},
+        {.asset = "ground/grass", .size = 4.5f, .bump = 0.8f, .roughness = 0.6f, .f0 = 0.03f, .tint = {1, 1, 1}},
     [GROUND_ROCK] =
         {.asset = "ground/rock", .size = 13.0f, .bump = 1.3f, .roughness = 0.45f, .f0 = 0.04f, .tint = {1, 1, 1}},
     [GROUND_SNOW] =
@@ -149,10 +149,28 @@ void hill_sort_patches(const hill_state *s, v3 eye, uint32_t *near_to_far)
 
 enum { PLANT_CELLS = 380 };
 
+/* Does the flight pass close by? Billboards are no company for an eye. */
+enum { FLIGHT_STEPS = 240 };
+static bool on_the_way(const v2 *way, float x, float z)
+{
+    for (int i = 0; i < FLIGHT_STEPS; i++) {
+        float dx = x - way[i].x, dz = z - way[i].y;
+        if (dx * dx + dz * dz < 17.0f * 17.0f)
+            return true;
+    }
+    return false;
+}
+
 /* One tree at most a cell, away from its middle by chance, where it is not too steep, too wet or too high. Woods come
  * from a noise; the share of conifers grows with height. */
 static void grow(hill_state *s, const amb_image *height)
 {
+    v2 way[FLIGHT_STEPS];
+    for (int i = 0; i < FLIGHT_STEPS; i++) {
+        float time = HILL_SECONDS * (float)i / FLIGHT_STEPS;
+        amb_camera c = amb_camera_at(hill_flight, HILL_FLIGHT_KEYS, time, 1.0f, 1.0f, 2.0f, 4, 4);
+        way[i] = (v2){c.position.x, c.position.z};
+    }
     for (int j = 0; j < PLANT_CELLS; j++)
         for (int i = 0; i < PLANT_CELLS; i++) {
             u4x h = u4x_hash((u4x){(uint32_t)i, (uint32_t)j, 77u, 5u});
@@ -175,7 +193,9 @@ static void grow(hill_state *s, const amb_image *height)
             uint32_t bits = amb_hash(h.w);
             float kind = (float)(bits & 1u) + (amb_unit(bits) < conifer ? 0.0f : 2.0f);
             float size = (5.0f + 7.5f * amb_unit(amb_hash(bits))) * (1.1f - 0.004f * above);
-            s->plant[s->plants++] = (hill_plant){(u - 0.5f) * HILL_SIZE, (v - 0.5f) * HILL_SIZE, size, kind};
+            float east = (u - 0.5f) * HILL_SIZE, south = (v - 0.5f) * HILL_SIZE;
+            if (!on_the_way(way, east, south))
+                s->plant[s->plants++] = (hill_plant){east, south, size, kind};
         }
 }
 

@@ -158,8 +158,8 @@ amb_status hill_draw_trees(const hill_pass *pass, amb_pass *out, amb_error *erro
 /* ---- grass --------------------------------------------------------------------------------------------------------
  */
 
-enum { GRASS_SIDE = 232 };
-#define GRASS_SPACING 0.38f
+enum { GRASS_SIDE = 288 };
+#define GRASS_SPACING 0.27f
 #define GRASS_REACH (0.5f * GRASS_SPACING * GRASS_SIDE)
 
 /* Tuft number → a cell of the world's own grid around the eye, and what grows in it by chance. */
@@ -180,10 +180,10 @@ static void grass_vertex(const amb_vs_in *in, amb_vs_out *out)
     f32x dx = place.x - eye.x, dz = place.y - eye.z, distance = f_sqrt(dx * dx + dz * dz);
     f32x grown = f_smoothstep(f_set(GRASS_REACH), f_set(0.55f * GRASS_REACH), distance);
     grown = grown * f_smoothstep(f_set(2.0f), f_set(3.6f), y + chance.z) *
-            f_smoothstep(f_set(0.5f), f_set(0.25f), east * east + south * south);
+            f_smoothstep(f_set(1.1f), f_set(0.6f), east * east + south * south);
     grown = grown * f_smoothstep(f_set(0.0f), f_set(-25.0f), y - f->p.snow_line);
     r->foot = (v3x){place.x, y - 0.05f, place.y};
-    r->size = (0.22f + 0.42f * chance.w * chance.w) * grown;
+    r->size = (0.17f + 0.34f * chance.w * chance.w) * grown;
     f32x kind = f_sel(more.x < 0.50f, f_set(0.0f), f_sel(more.x < 0.80f, f_set(1.0f), f_set(2.0f)));
     r->kind = f_sel(more.y < 0.07f, f_set(3.0f), kind);
     r->seed = more.z;

@@ -138,7 +138,7 @@ AMB_INLINE hill_air hill_air_along(const hill_pass *pass, v3x direction, f32x di
     glow = glow * glow;
     glow = glow * glow * 0.35f;
     v3x level =
-        v3x_scale(sky_horizon_rgb(&f->sky, (v3x){direction.x, f_set(0.0f), direction.z}), f_set(f->gain * 0.85f));
+        v3x_scale(sky_horizon_rgb(&f->sky, (v3x){direction.x, f_set(0.0f), direction.z}), f_set(f->gain * 0.42f));
     v3x colour =
         v3x_add(v3x_add(v3x_splat(f->haze_rgb), level), v3x_scale(v3x_splat(f->light[LIGHT_SUN].rgb), glow * 0.15f));
     return (hill_air){left, v3x_scale(colour, 1.0f - left)};

@@ -10,16 +10,6 @@
 /* ---- camera -------------------------------------------------------------------------------------------------------
  */
 
-static const amb_camera_key keys[] = {
-    {0.0f, {366.0f, 9.0f, 306.0f}, {285.0f, 14.0f, 60.0f}, {0, 1, 0}},
-    {15.0f, {338.0f, 5.0f, 236.0f}, {230.0f, 18.0f, 20.0f}, {0, 1, 0}},
-    {30.0f, {225.0f, 7.0f, 110.0f}, {60.0f, 60.0f, -220.0f}, {0, 1, 0}},
-    {45.0f, {20.0f, 90.0f, -60.0f}, {-330.0f, 110.0f, -330.0f}, {0, 1, 0}},
-    {60.0f, {-190.0f, 165.0f, 0.0f}, {160.0f, 20.0f, 170.0f}, {0, 1, 0}},
-    {75.0f, {60.0f, 60.0f, 420.0f}, {260.0f, 20.0f, 120.0f}, {0, 1, 0}},
-    {90.0f, {366.0f, 9.0f, 306.0f}, {285.0f, 14.0f, 60.0f}, {0, 1, 0}},
-};
-
 static float loop_time(double time, double period)
 {
     double loops = time / period, whole = loops > -9.0e15 && loops < 9.0e15 ? (double)(int64_t)loops : loops;
@@ -31,8 +21,8 @@ static float loop_time(double time, double period)
 static amb_camera camera_at(const hill_frame *f, const amb_scene_job *job)
 {
     float fov = 50.0f * (AMB_PI / 180.0f), near = 0.4f, far = 60000.0f;
-    amb_camera c = amb_camera_at(keys, sizeof keys / sizeof *keys, loop_time(job->time, (double)HILL_SECONDS), fov,
-                                 near, far, job->width, job->height);
+    amb_camera c = amb_camera_at(hill_flight, HILL_FLIGHT_KEYS, loop_time(job->time, (double)HILL_SECONDS), fov, near,
+                                 far, job->width, job->height);
     float ground = f_lane(hill_ground(f, (v2x){f_set(c.position.x), f_set(c.position.z)}, f_set(2.0f)), 0);
     float least = amb_s_max(ground, 0.0f) + 2.2f;
     if (c.position.y >= least)
@@ -243,7 +233,7 @@ const amb_scene WIDE(amb_scene_hillscape) = {
     .params = {hill_param_rows, HILL_PARAM_COUNT, sizeof(hill_params)},
     .aovs = hill_aovs,
     .aov_count = HILL_AOVS,
-    .post = "display:curve=filmic",
+    .post = "adjust:saturation=1.12,contrast=1.06;display:curve=filmic",
     .load = hill_load,
     .frame = hill_frame_draw,
     .unload = hill_unload,

@@ -26,7 +26,7 @@ v4x WIDE(amb_ground_grass)(v2x uv)
     static const float way[6][2] = {{2, 1}, {1, 2}, {2, -1}, {1, -2}, {3, 1}, {1, -3}};
     for (uint32_t i = 0; i < 6; i++)
         blade = f_max(blade * 0.86f, blades(uv, way[i][0], way[i][1], 210u + 7u * i));
-    f32x light = f_saturate(0.42f + 0.38f * blade + 0.22f * clumps + 0.16f * fine - 0.12f);
+    f32x light = f_saturate(0.10f + 0.55f * blade + 0.30f * clumps + 0.34f * fine);
     v3x colour = mix(v3x_splat((v3){0.016f, 0.030f, 0.007f}), (v3){0.105f, 0.150f, 0.036f}, light);
     f32x dry = f_smoothstep(f_set(0.15f), f_set(0.8f), tile_fbm(uv, 4, 203, 6, 0.6f) + 0.25f * blade);
     colour = mix(colour, (v3){0.165f, 0.140f, 0.055f}, dry * 0.30f);

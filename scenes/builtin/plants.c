@@ -108,9 +108,10 @@ static void broadleaf(painter *p, float spread, v3 dark, v3 light)
     enum { BALLS = 34 };
     trunk(p, 0.55f, 0.021f, (v3){0.10f, 0.075f, 0.05f});
     for (int ball = 0; ball < BALLS; ball++) {
-        float t = ((float)ball + 0.5f) / BALLS, y = 0.29f + 0.58f * t;
-        float bulge = 1.0f - (2.0f * t - 0.85f) * (2.0f * t - 0.85f) * 0.70f;
-        v3 middle = around(2.399963f * (float)ball + chance(p), spread * bulge * (0.20f + 0.75f * chance(p)), y);
+        float t = ((float)ball + 0.5f) / BALLS, y = 0.31f + 0.53f * t;
+        float bulge = f_sqrt(1.0f - (1.7f * t - 0.75f) * (1.7f * t - 0.75f)) * 1.05f;
+        v3 middle =
+            around(2.399963f * (float)ball + chance(p), spread * bulge * (0.30f + 0.70f * f_sqrt(chance(p))), y);
         float radius = 0.042f + 0.055f * chance(p);
         for (int k = 0; k < 16; k++) { /* its branch */
             float along = (float)k / 16.0f;
@@ -147,7 +148,7 @@ static void paint_trees(painter *p)
         if (i < 2)
             conifer(p, i ? 0.20f : 0.165f, dark[i], light[i]);
         else
-            broadleaf(p, i == 2 ? 0.185f : 0.15f, dark[i], light[i]);
+            broadleaf(p, i == 2 ? 0.185f : 0.165f, dark[i], light[i]);
     }
 }
 
@@ -170,7 +171,7 @@ static void paint_grass(painter *p)
     static const v3 foot[4] = {
         {0.020f, 0.032f, 0.009f}, {0.022f, 0.034f, 0.010f}, {0.060f, 0.052f, 0.022f}, {0.020f, 0.034f, 0.010f}};
     static const v3 tip[4] = {
-        {0.115f, 0.165f, 0.040f}, {0.145f, 0.180f, 0.050f}, {0.290f, 0.240f, 0.105f}, {0.120f, 0.165f, 0.045f}};
+        {0.115f, 0.165f, 0.040f}, {0.145f, 0.180f, 0.050f}, {0.290f, 0.240f, 0.105f}, {0.150f, 0.205f, 0.050f}};
     static const v3 petal[3] = {{0.75f, 0.72f, 0.62f}, {0.62f, 0.42f, 0.05f}, {0.38f, 0.20f, 0.50f}};
     for (int i = 0; i < COLUMNS; i++) {
         p->x0 = i * p->width;
