@@ -186,21 +186,11 @@ static void chunk_job(void *user, int index, int thread)
     raster_lap(timed, &scratch->stats, AMB_STAGE_BINS, lap);
 }
 
-static bool tile_is_touched(const amb_pass *pass, int tile)
-{
-    for (size_t i = 0; i < pass->chunk_count; i++) {
-        const raster_chunk *chunk = &pass->chunk[i];
-        if (chunk->count == 0 || chunk->large_count > 0 || chunk->tile_start[tile] < chunk->tile_start[tile + 1])
-            return true;
-    }
-    return false;
-}
-
 static void tile_job(void *user, int index, int thread)
 {
     amb_pass *pass = user;
     bool waits = pass->last_batch && pass->samples > 1 && pass->tile_store[index]; /* for its samples' average */
-    if (!tile_is_touched(pass, index) && !waits)
+    if (pass->tile_first[index] == pass->tile_first[index + 1] && !waits)
         return;
     AMB_DISPATCH(amb_context_isa(pass->context), raster_tile)(pass, index, &pass->scratch[thread], thread);
     pass->tile_started[index] = 1;
@@ -226,7 +216,7 @@ static bool run_batch(amb_pass *pass, bool last)
     if (pass->chunk_count == 0)
         return true;
     pass->last_batch = last;
-    if (!raster_ready_chunks(pass))
+    if (!raster_ready_chunks(pass) || !raster_list_chunks(pass))
         return false;
     amb_parallel_for(pass->context, pass->tiles_x * pass->tiles_y, tile_job, pass);
     pass->chunk_count = pass->chunks_ready = 0;
@@ -244,7 +234,37 @@ static size_t chunk_bytes(const amb_pass *pass, const raster_chunk *chunk)
            vertices = chunk->most_vertices;
     if (g->shader)
         vertices = triangles *= (size_t)g->vertices;
-    return (tiles + 1) * sizeof(uint32_t) + (vertices * (chunk->stride + 2) + triangles * (6 + 2)) * sizeof(uint32_t);
+    return (tiles + 1) * (sizeof(uint32_t) + sizeof(uint16_t)) +
+           (vertices * (chunk->stride + 2) + triangles * (6 + 2)) * sizeof(uint32_t);
+}
+
+/* What one holds that has been through the geometry stages: mostly far less. */
+static size_t ready_bytes(const amb_pass *pass, const raster_chunk *chunk)
+{
+    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
+    size_t entries = chunk->binned ? 2 * tiles + chunk->tile_start[tiles] : 0;
+    if (chunk->count == 0 || chunk->large_count > 0)
+        entries += (chunk->count ? chunk->large_count : 0) + tiles;
+    return sizeof *chunk +
+           ((size_t)chunk->vertex_count * (chunk->stride + 2) + (size_t)chunk->triangle.count * 6) * sizeof(uint32_t) +
+           entries * sizeof(uint16_t);
+}
+
+/* Makes room in the batch for `more` bytes: first by finding out what its chunks really hold, then by playing it. */
+static bool make_room(amb_pass *pass, size_t more)
+{
+    if (pass->chunk_count == 0 || (pass->chunk_count < RASTER_BATCH_CHUNKS && pass->bytes + more <= pass->batch_bytes))
+        return true;
+    if (!raster_ready_chunks(pass))
+        return false;
+    pass->bytes = 0;
+    for (size_t i = 0; i < pass->chunk_count; i++)
+        pass->bytes += ready_bytes(pass, &pass->chunk[i]);
+    /* Topping up ever smaller rests would run the geometry stages on ever fewer chunks at once. */
+    const size_t enough = pass->batch_bytes - pass->batch_bytes / 4;
+    if (pass->chunk_count < RASTER_BATCH_CHUNKS && pass->bytes <= enough && pass->bytes + more <= pass->batch_bytes)
+        return true;
+    return run_batch(pass, false);
 }
 
 bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk)
@@ -252,9 +272,7 @@ bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk)
     raster_chunk next = *chunk;
     next.stride = (RASTER_VERTEX_WORDS + (uint32_t)next.draw->state.varying_floats + 3) & ~3u;
     const size_t more = chunk_bytes(pass, &next), before = pass->chunk_capacity;
-    const bool full =
-        pass->chunk_count == RASTER_BATCH_CHUNKS || (pass->chunk_count > 0 && pass->bytes + more > pass->batch_bytes);
-    if (full && !run_batch(pass, false))
+    if (!make_room(pass, more))
         return false;
     if (!raster_grow(&pass->chunk, &pass->chunk_capacity, pass->chunk_count + 1, sizeof *pass->chunk))
         return false;

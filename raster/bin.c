@@ -1,5 +1,6 @@
 /* Binning: a counting sort of a chunk's triangles into the tiles their boxes touch, in order. A triangle on many tiles
- * goes to the chunk's list of large ones instead, which every tile looks through: so a chunk's bins stay small. */
+ * goes to the chunk's list of large ones instead, which every tile looks through: so a chunk's bins stay small. Then
+ * the same for a batch: a list of chunks for every tile. */
 #include "raster/internal.h"
 
 typedef struct tile_box {
@@ -44,10 +45,42 @@ static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned sh
     }
 }
 
+/* The tiles that the triangles' boxes touch. */
+static void set_bounds(raster_chunk *chunk, unsigned shift)
+{
+    tile_box all = {UINT16_MAX, UINT16_MAX, 0, 0};
+    for (uint32_t i = 0; i < chunk->triangle.count; i++) {
+        tile_box b = box_of(&chunk->triangle, i, shift);
+        all.x0 = b.x0 < all.x0 ? b.x0 : all.x0, all.y0 = b.y0 < all.y0 ? b.y0 : all.y0;
+        all.x1 = b.x1 > all.x1 ? b.x1 : all.x1, all.y1 = b.y1 > all.y1 ? b.y1 : all.y1;
+    }
+    chunk->tile_x0 = (uint16_t)all.x0, chunk->tile_y0 = (uint16_t)all.y0;
+    chunk->tile_x1 = (uint16_t)all.x1, chunk->tile_y1 = (uint16_t)all.y1;
+}
+
+/* A chunk of few triangles: every tile in its bounds looks through all of them. */
+static bool leave_unbinned(raster_chunk *chunk)
+{
+    const uint32_t count = chunk->triangle.count;
+    if (!raster_grow(&chunk->large, &chunk->large_capacity, (size_t)count + 1, sizeof *chunk->large))
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        chunk->large[i] = (uint16_t)i;
+    chunk->large_count = count;
+    return true;
+}
+
 void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
 {
     const size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
     const unsigned shift = (unsigned)__builtin_ctz((unsigned)pass->tile_size);
+    set_bounds(chunk, shift);
+    chunk->binned = chunk->triangle.count > RASTER_UNBINNED;
+    if (!chunk->binned) {
+        if (!leave_unbinned(chunk))
+            goto error;
+        return;
+    }
     if (!raster_grow(&chunk->tile_start, &chunk->tile_capacity, tiles + 1, sizeof *chunk->tile_start))
         goto error;
     memset(chunk->tile_start, 0, (tiles + 1) * sizeof *chunk->tile_start);
@@ -66,4 +99,51 @@ void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scrat
     return;
 error:
     scratch->failed = true;
+}
+
+/* ---- the tiles' chunks ------------------------------------------------------------------------------------------- */
+
+/* Calls that count (`place` false) or place a chunk at every tile it touches. */
+static void at_tiles(amb_pass *pass, size_t number, bool place)
+{
+    const raster_chunk *chunk = &pass->chunk[number];
+    const unsigned shift = (unsigned)__builtin_ctz((unsigned)pass->tile_size);
+    uint32_t x0 = chunk->tile_x0, y0 = chunk->tile_y0, x1 = chunk->tile_x1, y1 = chunk->tile_y1;
+    bool everywhere = chunk->count == 0 || chunk->large_count > 0; /* in these bounds */
+    if (chunk->count == 0) {
+        const raster_draw *d = chunk->draw;
+        x0 = (uint32_t)d->x0 >> shift, y0 = (uint32_t)d->y0 >> shift;
+        x1 = (uint32_t)(d->x1 - 1) >> shift, y1 = (uint32_t)(d->y1 - 1) >> shift;
+    } else if (chunk->triangle.count == 0) {
+        return;
+    }
+    for (uint32_t y = y0; y <= y1; y++)
+        for (uint32_t x = x0; x <= x1; x++) {
+            size_t tile = (size_t)y * (size_t)pass->tiles_x + x;
+            if (!everywhere && chunk->tile_start[tile] == chunk->tile_start[tile + 1])
+                continue;
+            if (place)
+                pass->tile_chunk[--pass->tile_first[tile]] = (uint16_t)number;
+            else
+                pass->tile_first[tile]++;
+        }
+}
+
+bool raster_list_chunks(amb_pass *pass)
+{
+    const size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
+    memset(pass->tile_first, 0, (tiles + 1) * sizeof *pass->tile_first);
+    for (size_t i = 0; i < pass->chunk_count; i++)
+        at_tiles(pass, i, false);
+    uint32_t count = 0;
+    for (size_t i = 0; i < tiles; i++) { /* each tile's end; placing moves it down to the start */
+        count += pass->tile_first[i];
+        pass->tile_first[i] = count;
+    }
+    pass->tile_first[tiles] = count;
+    if (!raster_grow(&pass->tile_chunk, &pass->tile_chunk_capacity, (size_t)count + 1, sizeof *pass->tile_chunk))
+        return false;
+    for (size_t i = pass->chunk_count; i-- > 0;)
+        at_tiles(pass, i, true);
+    return true;
 }

@@ -32,10 +32,11 @@
 #define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
 #define RASTER_PATCH_WINDOW 16384 /* patches hull-shaded at a time, at most */
 #define RASTER_PATCH_BYTES ((size_t)8 << 20)
-#define RASTER_POLYGON 9      /* vertices of a triangle clipped by six planes */
-#define RASTER_LARGE_TILES 16 /* triangles on more tiles than this are not binned but offered to every tile */
-#define RASTER_MAX_TILE 128   /* pixels, tile edge */
-#define RASTER_BATCH_CHUNKS 2048
+#define RASTER_POLYGON 9          /* vertices of a triangle clipped by six planes */
+#define RASTER_LARGE_TILES 16     /* triangles on more tiles than this are not binned but offered to every tile */
+#define RASTER_MAX_TILE 128       /* pixels, tile edge */
+#define RASTER_BATCH_CHUNKS 16384 /* their numbers fit 16 bits */
+#define RASTER_UNBINNED 64        /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
 #define RASTER_MAX_POINT 4096.0f
 #define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */
@@ -97,9 +98,11 @@ typedef struct raster_chunk {
     uint32_t stride, vertex_count;
     size_t x_capacity, y_capacity, vertex_capacity;
     raster_triangles triangle;
-    uint32_t *tile_start; /* tiles + 1: where each tile's entries start */
-    uint16_t *entry;      /* triangle numbers, tile by tile, ascending */
-    uint16_t *large;      /* those on many tiles, ascending */
+    uint16_t tile_x0, tile_y0, tile_x1, tile_y1; /* tiles that the triangles' boxes touch */
+    bool binned;                                 /* else all triangles are in `large` */
+    uint32_t *tile_start;                        /* tiles + 1: where each tile's entries start */
+    uint16_t *entry;                             /* triangle numbers, tile by tile, ascending */
+    uint16_t *large;                             /* those on many tiles, ascending */
     size_t tile_capacity, entry_capacity, large_capacity;
     uint32_t large_count;
 } raster_chunk;
@@ -184,7 +187,10 @@ struct amb_pass {
     raster_chunk *chunk;
     size_t chunk_count, chunk_capacity; /* of the batch being run; those above keep their memory for the next */
     size_t chunks_ready;                /* of those, through the geometry stages */
-    size_t bytes;                       /* what the batch's chunks may come to hold */
+    size_t bytes;                       /* what the batch's chunks hold, or may come to hold */
+    uint32_t *tile_first;               /* tiles + 1: where each tile's chunks start in tile_chunk */
+    uint16_t *tile_chunk;               /* numbers of chunks, tile by tile, ascending */
+    size_t tile_chunk_capacity;
     raster_patches patches;
     raster_scratch *scratch;
     int threads;
@@ -230,6 +236,8 @@ void raster_setup_lines(const amb_pass *pass, raster_chunk *chunk, raster_scratc
 bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_t corner[3], const double clip[4],
                         const double weight[2], uint32_t *number);
 void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
+/* Lists, for every tile, the batch's chunks that touch it; false when out of memory. */
+bool raster_list_chunks(amb_pass *pass);
 
 typedef struct raster_polygon_vertex {
     double clip[4];   /* x, y, z, w */

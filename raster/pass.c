@@ -57,9 +57,10 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
     pass->guard_x = guard_factor(pass->width);
     pass->guard_y = guard_factor(pass->height);
     pass->tile_started = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y, 1);
+    pass->tile_first = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y + 1, sizeof *pass->tile_first);
     if (pass->samples > 1)
         pass->tile_store = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y, sizeof *pass->tile_store);
-    if (!pass->tile_started || (pass->samples > 1 && !pass->tile_store)) {
+    if (!pass->tile_started || !pass->tile_first || (pass->samples > 1 && !pass->tile_store)) {
         status = amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory for %d×%d tiles", pass->tiles_x, pass->tiles_y);
         goto error;
     }
@@ -401,6 +402,8 @@ void amb_pass_close(amb_pass **pass)
     free(p->chunk);
     free(p->scratch);
     free(p->tile_started);
+    free(p->tile_first);
+    free(p->tile_chunk);
     free(p->srgb);
     free(p);
     *pass = NULL;

@@ -10,27 +10,37 @@ void raster_tile_play(const amb_pass *pass, int tile, raster_scratch *scratch, i
 /* ---- the tile's pixels ------------------------------------------------------------------------------------------ */
 
 #if AMB_LANES == 16 && AMB_X86
-#define RASTER_STREAMS 1
-/* One channel of four rows of pixels to the image, whole cache lines past the caches: nobody reads them again soon. */
-static void stream_rows(const raster_tile *tile, const float *lanes, float *row, size_t stride)
+#define RASTER_WHOLE_ROWS 1
+/* Four blocks side by side, quads in row order, to four rows of sixteen pixels, or back. */
+static inline void exchange_rows(__m512 r[4])
+{
+    __m512 ab = _mm512_shuffle_f32x4(r[0], r[1], 0x44), cd = _mm512_shuffle_f32x4(r[2], r[3], 0x44);
+    __m512 ab2 = _mm512_shuffle_f32x4(r[0], r[1], 0xee), cd2 = _mm512_shuffle_f32x4(r[2], r[3], 0xee);
+    r[0] = _mm512_shuffle_f32x4(ab, cd, 0x88), r[1] = _mm512_shuffle_f32x4(ab, cd, 0xdd);
+    r[2] = _mm512_shuffle_f32x4(ab2, cd2, 0x88), r[3] = _mm512_shuffle_f32x4(ab2, cd2, 0xdd);
+}
+
+/* One channel of four rows of pixels, to the image past the caches (nobody reads it again soon) or from it. */
+static void transfer_rows(const raster_tile *tile, float *lanes, float *row, size_t stride, bool to_image)
 {
     const size_t step = (size_t)block_planes(tile) * AMB_LANES;
     for (int x = 0; x < tile->right; x += 16, lanes += 4 * step) {
-        __m512 a = (__m512)rows_of(f_load(lanes)), b = (__m512)rows_of(f_load(lanes + step));
-        __m512 c = (__m512)rows_of(f_load(lanes + 2 * step)), d = (__m512)rows_of(f_load(lanes + 3 * step));
-        __m512 ab = _mm512_shuffle_f32x4(a, b, 0x44), cd = _mm512_shuffle_f32x4(c, d, 0x44);
-        __m512 ab2 = _mm512_shuffle_f32x4(a, b, 0xee), cd2 = _mm512_shuffle_f32x4(c, d, 0xee);
-        _mm512_stream_ps(row + x, _mm512_shuffle_f32x4(ab, cd, 0x88));
-        _mm512_stream_ps(row + stride + x, _mm512_shuffle_f32x4(ab, cd, 0xdd));
-        _mm512_stream_ps(row + 2 * stride + x, _mm512_shuffle_f32x4(ab2, cd2, 0x88));
-        _mm512_stream_ps(row + 3 * stride + x, _mm512_shuffle_f32x4(ab2, cd2, 0xdd));
+        __m512 r[4];
+        for (size_t i = 0; i < 4; i++)
+            r[i] = to_image ? (__m512)rows_of(f_load(lanes + i * step)) : _mm512_load_ps(row + i * stride + x);
+        exchange_rows(r);
+        for (size_t i = 0; i < 4; i++)
+            if (to_image)
+                _mm512_stream_ps(row + i * stride + x, r[i]);
+            else
+                f_store(lanes + i * step, rows_of((f32x)r[i]));
     }
 }
 #else
-#define RASTER_STREAMS 0
-static void stream_rows(const raster_tile *tile, const float *lanes, float *row, size_t stride)
+#define RASTER_WHOLE_ROWS 0
+static void transfer_rows(const raster_tile *tile, float *lanes, float *row, size_t stride, bool to_image)
 {
-    (void)tile, (void)lanes, (void)row, (void)stride;
+    (void)tile, (void)lanes, (void)row, (void)stride, (void)to_image;
 }
 #endif
 
@@ -42,8 +52,8 @@ static void transfer(const raster_tile *tile, const amb_image *image, int channe
         float *row = amb_image_row(image, channel, tile->y0 + y) + tile->x0;
         float *lanes = block_at(tile, 0, y / AMB_BLOCK_H) + plane * AMB_LANES;
         int rows = tile->bottom - y < AMB_BLOCK_H ? tile->bottom - y : AMB_BLOCK_H;
-        if (RASTER_STREAMS && to_image && rows == AMB_BLOCK_H) {
-            stream_rows(tile, lanes, row, image->stride);
+        if (RASTER_WHOLE_ROWS && rows == AMB_BLOCK_H) {
+            transfer_rows(tile, lanes, row, image->stride, to_image);
             continue;
         }
         for (int x = 0; x < tile->right; x += AMB_BLOCK_W, lanes += (size_t)block_planes(tile) * AMB_LANES) {
@@ -111,7 +121,8 @@ static void resolve_samples(const raster_tile *tile)
 /* Fills an attachment's planes with its pixels, or with its clear value. */
 static void load_attachment(const raster_tile *tile, const raster_attachment *a, bool from_target)
 {
-    for (int c = 0; c < a->channels; c++)
+    const bool partial = tile->right < tile->pass->tile_size || tile->bottom < tile->pass->tile_size;
+    for (int c = 0; c < a->channels && (!from_target || partial); c++)
         fill(tile, a->first + c, from_target ? 0.0f : a->clear[c]);
     for (int c = 0; from_target && a->image && c < a->channels; c++)
         transfer(tile, a->image, c, a->first + c, false);
@@ -144,7 +155,7 @@ static void store_tile(const raster_tile *tile)
         store_attachment(tile, &pass->color[i]);
     store_attachment(tile, &pass->stencil);
     store_attachment(tile, &pass->depth);
-#if RASTER_STREAMS
+#if RASTER_WHOLE_ROWS
     _mm_sfence();
 #endif
 }
@@ -164,15 +175,15 @@ static bool set_clip(raster_tile *tile, const raster_draw *draw)
 }
 
 /* Consecutive full-screen draws, row of blocks by row of blocks, so that a row stays in the nearest cache. */
-static void play_screens(raster_tile *tile, const raster_chunk *chunk, size_t count)
+static void play_screens(raster_tile *tile, const uint16_t *number, size_t count)
 {
     for (int by = 0; by * AMB_BLOCK_H < tile->bottom; by++)
         for (size_t i = 0; i < count; i++) {
-            if (!set_clip(tile, chunk[i].draw) || (by + 1) * AMB_BLOCK_H <= tile->clip_y0 ||
-                by * AMB_BLOCK_H >= tile->clip_y1)
+            const raster_draw *draw = tile->pass->chunk[number[i]].draw;
+            if (!set_clip(tile, draw) || (by + 1) * AMB_BLOCK_H <= tile->clip_y0 || by * AMB_BLOCK_H >= tile->clip_y1)
                 continue;
             for (int bx = tile->clip_x0 / AMB_BLOCK_W; bx * AMB_BLOCK_W < tile->clip_x1; bx++)
-                fragment_screen(tile, &chunk[i].draw->state, bx, by);
+                fragment_screen(tile, &draw->state, bx, by);
         }
 }
 
@@ -224,8 +235,8 @@ static inline void play_group(const raster_tile *tile, raster_shading *s, raster
 /* The chunk's binned and large triangles, merged back into their order. */
 static void play_chunk(raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk, int number)
 {
-    const uint16_t *binned = chunk->entry + chunk->tile_start[number];
-    const uint16_t *binned_end = chunk->entry + chunk->tile_start[number + 1];
+    const uint16_t *binned = chunk->binned ? chunk->entry + chunk->tile_start[number] : NULL;
+    const uint16_t *binned_end = chunk->binned ? chunk->entry + chunk->tile_start[number + 1] : NULL;
     const uint16_t *large = chunk->large, *large_end = chunk->large + chunk->large_count;
     s->chunk = chunk;
     s->draw = &chunk->draw->state;
@@ -271,17 +282,19 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     }
     lap = raster_lap(timed, tile.stats, AMB_STAGE_TILES, lap);
     const uint64_t nested = tile.stats->ticks[AMB_STAGE_FRAGMENTS] + tile.stats->ticks[AMB_STAGE_OUTPUT];
-    for (size_t i = 0; i < pass->chunk_count;) {
+    const uint16_t *next = pass->tile_chunk + pass->tile_first[number];
+    const uint16_t *end = pass->tile_chunk + pass->tile_first[number + 1];
+    while (next < end) {
         size_t screens = 0;
-        while (i + screens < pass->chunk_count && pass->chunk[i + screens].count == 0)
+        while (next + screens < end && pass->chunk[next[screens]].count == 0)
             screens++;
-        if (screens > 0)
+        if (screens > 0) {
             flush_queue(&tile, &queue);
-        if (screens > 0)
-            play_screens(&tile, &pass->chunk[i], screens);
-        else
-            play_chunk(&tile, &shading, &queue, &pass->chunk[i], number);
-        i += screens > 0 ? screens : 1;
+            play_screens(&tile, next, screens);
+        } else {
+            play_chunk(&tile, &shading, &queue, &pass->chunk[*next], number);
+        }
+        next += screens > 0 ? screens : 1;
     }
     flush_queue(&tile, &queue);
     lap = raster_lap(timed, tile.stats, AMB_STAGE_COVERAGE, lap);
