@@ -134,12 +134,7 @@ bool raster_reserve_vertices(raster_chunk *chunk, size_t count)
 
 bool raster_reserve_triangles(raster_chunk *chunk, size_t count)
 {
-    raster_triangles *t = &chunk->triangle;
-    uint32_t **array[6] = {&t->v[0], &t->v[1], &t->v[2], &t->primitive_front, &t->low, &t->high};
-    for (int i = 0; i < 6; i++)
-        if (!raster_grow(array[i], &t->capacity[i], count, sizeof(uint32_t)))
-            return false;
-    return true;
+    return raster_grow(&chunk->triangle, &chunk->triangle_capacity, count, sizeof *chunk->triangle);
 }
 
 /* ---- jobs ------------------------------------------------------------------------------------------------------- */
@@ -235,7 +230,7 @@ static size_t chunk_bytes(const amb_pass *pass, const raster_chunk *chunk)
     if (g->shader)
         vertices = triangles *= (size_t)g->vertices;
     return (tiles + 1) * (sizeof(uint32_t) + sizeof(uint16_t)) +
-           (vertices * (chunk->stride + 2) + triangles * (6 + 2)) * sizeof(uint32_t);
+           (vertices * (chunk->stride + 2) + triangles * 2) * sizeof(uint32_t) + triangles * sizeof(raster_triangle);
 }
 
 /* What one holds that has been through the geometry stages: mostly far less. */
@@ -246,7 +241,7 @@ static size_t ready_bytes(const amb_pass *pass, const raster_chunk *chunk)
     if (chunk->count == 0 || chunk->large_count > 0)
         entries += (chunk->count ? chunk->large_count : 0) + tiles;
     return sizeof *chunk +
-           ((size_t)chunk->vertex_count * (chunk->stride + 2) + (size_t)chunk->triangle.count * 6) * sizeof(uint32_t) +
+           ((size_t)chunk->vertex_count * (chunk->stride + 2) + (size_t)chunk->triangle_count * 6) * sizeof(uint32_t) +
            entries * sizeof(uint16_t);
 }
 
@@ -282,7 +277,7 @@ bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk)
     slot->first = next.first, slot->count = next.count;
     slot->patch = next.patch, slot->skipped = next.skipped;
     slot->stride = next.stride;
-    slot->vertex_count = slot->triangle.count = slot->large_count = 0;
+    slot->vertex_count = slot->triangle_count = slot->large_count = 0;
     pass->bytes += more;
     return true;
 }

@@ -7,10 +7,10 @@ typedef struct tile_box {
     uint32_t x0, y0, x1, y1;
 } tile_box;
 
-static tile_box box_of(const raster_triangles *t, uint32_t i, unsigned shift)
+static tile_box box_of(const raster_triangle *t, unsigned shift)
 {
-    return (tile_box){(t->low[i] & 0xffffu) >> shift, t->low[i] >> 16 >> shift, (t->high[i] & 0xffffu) >> shift,
-                      t->high[i] >> 16 >> shift};
+    return (tile_box){(t->low & 0xffffu) >> shift, t->low >> 16 >> shift, (t->high & 0xffffu) >> shift,
+                      t->high >> 16 >> shift};
 }
 
 static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) > RASTER_LARGE_TILES; }
@@ -18,8 +18,8 @@ static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) 
 static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
 {
     uint32_t large = 0;
-    for (uint32_t i = 0; i < chunk->triangle.count; i++) {
-        tile_box b = box_of(&chunk->triangle, i, shift);
+    for (uint32_t i = 0; i < chunk->triangle_count; i++) {
+        tile_box b = box_of(&chunk->triangle[i], shift);
         if (is_large(b)) {
             large++;
             continue;
@@ -33,8 +33,8 @@ static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigne
 
 static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
 {
-    for (uint32_t i = chunk->triangle.count; i-- > 0;) { /* backwards: starts move down to their final places */
-        tile_box b = box_of(&chunk->triangle, i, shift);
+    for (uint32_t i = chunk->triangle_count; i-- > 0;) { /* backwards: starts move down to their final places */
+        tile_box b = box_of(&chunk->triangle[i], shift);
         if (is_large(b)) {
             chunk->large[--chunk->large_count] = (uint16_t)i;
             continue;
@@ -49,8 +49,8 @@ static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned sh
 static void set_bounds(raster_chunk *chunk, unsigned shift)
 {
     tile_box all = {UINT16_MAX, UINT16_MAX, 0, 0};
-    for (uint32_t i = 0; i < chunk->triangle.count; i++) {
-        tile_box b = box_of(&chunk->triangle, i, shift);
+    for (uint32_t i = 0; i < chunk->triangle_count; i++) {
+        tile_box b = box_of(&chunk->triangle[i], shift);
         all.x0 = b.x0 < all.x0 ? b.x0 : all.x0, all.y0 = b.y0 < all.y0 ? b.y0 : all.y0;
         all.x1 = b.x1 > all.x1 ? b.x1 : all.x1, all.y1 = b.y1 > all.y1 ? b.y1 : all.y1;
     }
@@ -61,7 +61,7 @@ static void set_bounds(raster_chunk *chunk, unsigned shift)
 /* A chunk of few triangles: every tile in its bounds looks through all of them. */
 static bool leave_unbinned(raster_chunk *chunk)
 {
-    const uint32_t count = chunk->triangle.count;
+    const uint32_t count = chunk->triangle_count;
     if (!raster_grow(&chunk->large, &chunk->large_capacity, (size_t)count + 1, sizeof *chunk->large))
         return false;
     for (uint32_t i = 0; i < count; i++)
@@ -75,7 +75,7 @@ void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scrat
     const size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
     const unsigned shift = (unsigned)__builtin_ctz((unsigned)pass->tile_size);
     set_bounds(chunk, shift);
-    chunk->binned = chunk->triangle.count > RASTER_UNBINNED;
+    chunk->binned = chunk->triangle_count > RASTER_UNBINNED;
     if (!chunk->binned) {
         if (!leave_unbinned(chunk))
             goto error;
@@ -114,7 +114,7 @@ static void at_tiles(amb_pass *pass, size_t number, bool place)
         const raster_draw *d = chunk->draw;
         x0 = (uint32_t)d->x0 >> shift, y0 = (uint32_t)d->y0 >> shift;
         x1 = (uint32_t)(d->x1 - 1) >> shift, y1 = (uint32_t)(d->y1 - 1) >> shift;
-    } else if (chunk->triangle.count == 0) {
+    } else if (chunk->triangle_count == 0) {
         return;
     }
     for (uint32_t y = y0; y <= y1; y++)

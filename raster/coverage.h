@@ -3,6 +3,7 @@
 #ifndef AMBIANCE_RASTER_COVERAGE_H
 #define AMBIANCE_RASTER_COVERAGE_H
 
+#include "core/gather.h"
 #include "raster/fragment.h"
 
 #include <stdlib.h>
@@ -179,6 +180,7 @@ typedef struct edge_group {
     int32_t c[3][AMB_LANES], a[3][AMB_LANES], b[3][AMB_LANES];
     float bias[3][AMB_LANES], inverse_area[AMB_LANES];
     uint32_t number[3][AMB_LANES], primitive_front[AMB_LANES], low[AMB_LANES], high[AMB_LANES];
+    f32x z[3], inverse_w[3];
     uint32_t small; /* lanes whose edges are filled */
 } edge_group;
 
@@ -190,17 +192,19 @@ static inline i32x box_origin(i32x bound, int tile_first, int block)
 
 static inline void make_group(const raster_tile *tile, const raster_chunk *chunk, const int32_t *index, edge_group *g)
 {
-    const raster_triangles *t = &chunk->triangle;
-    i32x at = i_load(index), x[3], y[3];
-    i32x low = u_as_i(u_gather(t->low, at));
+    u32x v[4], box[4], vertex[4];
+    i32x x[3], y[3], at = i_load(index) * (int32_t)(sizeof(raster_triangle) / sizeof(uint32_t));
+    fetch_4(chunk->triangle->v, at, v);
+    fetch_2(&chunk->triangle->low, at, box);
+    i32x low = u_as_i(box[0]);
     i_store((int32_t *)(void *)g->low, low);
-    i_store((int32_t *)(void *)g->high, u_as_i(u_gather(t->high, at)));
-    i_store((int32_t *)(void *)g->primitive_front, u_as_i(u_gather(t->primitive_front, at)));
+    i_store((int32_t *)(void *)g->high, u_as_i(box[1]));
+    i_store((int32_t *)(void *)g->primitive_front, u_as_i(v[3]));
     for (int i = 0; i < 3; i++) {
-        i32x v = u_as_i(u_gather(t->v[i], at));
-        i_store((int32_t *)(void *)g->number[i], v);
-        x[i] = i_gather(chunk->x, v);
-        y[i] = i_gather(chunk->y, v);
+        i_store((int32_t *)(void *)g->number[i], u_as_i(v[i]));
+        fetch_4(chunk->vertex, u_as_i(v[i]) * (int32_t)chunk->stride, vertex);
+        g->z[i] = f_from_bits(u_as_i(vertex[0])), g->inverse_w[i] = f_from_bits(u_as_i(vertex[1]));
+        x[i] = u_as_i(vertex[2]), y[i] = u_as_i(vertex[3]);
     }
     i32x px = box_origin(low & 0xffff, tile->x0, AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
     i32x py = box_origin((i32x)((u32x)low >> 16), tile->y0, AMB_BLOCK_H) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;

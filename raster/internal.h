@@ -67,22 +67,22 @@ typedef struct raster_draw {
     bool wireframe;        /* lines that are edges of triangles */
 } raster_draw;
 
-/* A vertex after the vertex stage, without its window position; the varyings follow, and padding to a multiple of four
- * words: four floats can be read wherever one can. */
+/* A vertex after the vertex stage: four words that are fetched at once; the varyings follow, and padding to a multiple
+ * of four words: four floats can be read wherever one can. */
 typedef struct raster_vertex {
     float z; /* depth 0…1 */
-    float inverse_w, padding[2];
+    float inverse_w;
+    int32_t x, y; /* window, 1/256 pixel; of vertices that need no clipping */
     float varying[];
 } raster_vertex;
 
-/* Triangles left by set-up, one array a member, so that tiles can gather them lanes-wide. */
-typedef struct raster_triangles {
-    uint32_t *v[3];            /* vertex numbers, ordered so that the doubled area is positive with y down */
-    uint32_t *primitive_front; /* running number in the draw, top bit: front face */
-    uint32_t *low, *high;      /* x | y << 16: inclusive bounds, inside the target, of pixels that may be covered */
-    size_t capacity[6];
-    uint32_t count;
-} raster_triangles;
+/* A triangle left by set-up. Tiles fetch them lanes-wide, four words at once. */
+typedef struct raster_triangle {
+    uint32_t v[3];            /* vertex numbers, ordered so that the doubled area is positive with y down */
+    uint32_t primitive_front; /* running number in the draw, top bit: front face */
+    uint32_t low, high;       /* x | y << 16: inclusive bounds, inside the target, of pixels that may be covered */
+    uint32_t padding[2];
+} raster_triangle;
 
 typedef struct raster_chunk {
     const raster_draw *draw;
@@ -93,11 +93,12 @@ typedef struct raster_chunk {
     uint32_t skipped;
     uint32_t most_vertices; /* before it has any */
 
-    int32_t *x, *y;   /* of the vertices: window, 1/256 pixel */
+    int32_t *x, *y;   /* of the vertices, for set-up: as in their records */
     uint32_t *vertex; /* raster_vertex records of `stride` words each */
     uint32_t stride, vertex_count;
-    size_t x_capacity, y_capacity, vertex_capacity;
-    raster_triangles triangle;
+    size_t x_capacity, y_capacity, vertex_capacity, triangle_capacity;
+    raster_triangle *triangle;
+    uint32_t triangle_count;
     uint16_t tile_x0, tile_y0, tile_x1, tile_y1; /* tiles that the triangles' boxes touch */
     bool binned;                                 /* else all triangles are in `large` */
     uint32_t *tile_start;                        /* tiles + 1: where each tile's entries start */

@@ -349,11 +349,7 @@ static void free_chunk(raster_chunk *chunk)
     free(chunk->x);
     free(chunk->y);
     free(chunk->vertex);
-    for (int i = 0; i < 3; i++)
-        free(chunk->triangle.v[i]);
-    free(chunk->triangle.primitive_front);
-    free(chunk->triangle.low);
-    free(chunk->triangle.high);
+    free(chunk->triangle);
     free(chunk->tile_start);
     free(chunk->entry);
     free(chunk->large);

@@ -25,14 +25,10 @@ static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scrat
         scratch->stats.triangles_culled++;
         return;
     }
-    raster_triangles *t = &chunk->triangle;
-    const uint32_t n = t->count++;
-    t->v[0][n] = a;
-    t->v[1][n] = area > 0 ? b : c;
-    t->v[2][n] = area > 0 ? c : b;
-    t->primitive_front[n] = primitive | (front ? 1u << 31 : 0u);
-    t->low[n] = (uint32_t)x0 | (uint32_t)y0 << 16;
-    t->high[n] = (uint32_t)x1 | (uint32_t)y1 << 16;
+    chunk->triangle[chunk->triangle_count++] = (raster_triangle){.v = {a, area > 0 ? b : c, area > 0 ? c : b},
+                                                                 .primitive_front = primitive | (front ? 1u << 31 : 0u),
+                                                                 .low = (uint32_t)x0 | (uint32_t)y0 << 16,
+                                                                 .high = (uint32_t)x1 | (uint32_t)y1 << 16};
 }
 
 /* ---- the clipped ones ------------------------------------------------------------------------------------------- */
@@ -64,6 +60,7 @@ bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_
     raster_vertex *v = raster_vertex_at(chunk, *number);
     v->z = z / w;
     v->inverse_w = 1.0f / w;
+    v->x = fixed_x, v->y = fixed_y;
     const raster_vertex *a = raster_vertex_at(chunk, corner[0]), *b = raster_vertex_at(chunk, corner[1]),
                         *c = raster_vertex_at(chunk, corner[2]);
     for (int k = 0; k < chunk->draw->state.varying_floats; k++) {
@@ -90,7 +87,7 @@ static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scra
     raster_clip(&polygon, codes, (double)pass->guard_x, (double)pass->guard_y);
     scratch->stats.triangles_clipped++;
     if (!raster_reserve_vertices(chunk, (size_t)chunk->vertex_count + RASTER_POLYGON) ||
-        !raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + RASTER_POLYGON))
+        !raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + RASTER_POLYGON))
         return false;
     uint32_t number[RASTER_POLYGON];
     for (int i = 0; i < polygon.count; i++) {
@@ -118,7 +115,7 @@ void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch 
         scratch->stats.triangles_culled++;
     else if (any != 0)
         scratch->failed |= !clip_triangle(pass, chunk, scratch, corner, any);
-    else if (raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + 1))
+    else if (raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + 1))
         add_triangle(pass, chunk, scratch, corner, corner[3]);
     else
         scratch->failed = true;

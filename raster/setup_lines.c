@@ -16,12 +16,10 @@ static void add(raster_chunk *chunk, raster_scratch *scratch, uint32_t from, uin
         scratch->stats.triangles_culled++;
         return;
     }
-    raster_triangles *t = &chunk->triangle;
-    const uint32_t n = t->count++;
-    t->v[0][n] = from, t->v[1][n] = to, t->v[2][n] = to;
-    t->primitive_front[n] = primitive_front;
-    t->low[n] = (uint32_t)x0 | (uint32_t)y0 << 16;
-    t->high[n] = (uint32_t)x1 | (uint32_t)y1 << 16;
+    chunk->triangle[chunk->triangle_count++] = (raster_triangle){.v = {from, to, to},
+                                                                 .primitive_front = primitive_front,
+                                                                 .low = (uint32_t)x0 | (uint32_t)y0 << 16,
+                                                                 .high = (uint32_t)x1 | (uint32_t)y1 << 16};
 }
 
 static raster_polygon_vertex corner_vertex(const raster_scratch *scratch, uint32_t v, int corner)
@@ -96,7 +94,7 @@ void raster_setup_lines(const amb_pass *pass, raster_chunk *chunk, raster_scratc
         const uint32_t v[3] = {scratch->corner[0][n], scratch->corner[1][n], scratch->corner[2][n]};
         uint32_t primitive = scratch->corner[3][n];
         if (!raster_reserve_vertices(chunk, (size_t)chunk->vertex_count + 6) ||
-            !raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + 3)) {
+            !raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + 3)) {
             scratch->failed = true;
             return;
         }
@@ -109,5 +107,5 @@ void raster_setup_lines(const amb_pass *pass, raster_chunk *chunk, raster_scratc
         else
             add(chunk, scratch, v[0], v[0], primitive | 1u << 31, reach);
     }
-    scratch->stats.triangles_binned += chunk->triangle.count;
+    scratch->stats.triangles_binned += chunk->triangle_count;
 }

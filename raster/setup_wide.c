@@ -46,15 +46,15 @@ static maskx touches_a_centre(const corners *c, i32x x0, i32x y0, i32x x1, i32x 
     return touched;
 }
 
-/* Appends the kept lanes in order. */
-static void append(raster_triangles *t, uint32_t kept, const uint32_t *const word[6])
+/* Appends the kept lanes in order. word[i]: of every lane. */
+static void append(raster_chunk *chunk, uint32_t kept, uint32_t word[6][AMB_LANES])
 {
-    uint32_t *const array[6] = {t->v[0], t->v[1], t->v[2], t->primitive_front, t->low, t->high};
     for (; kept != 0; kept &= kept - 1) {
         int lane = __builtin_ctz(kept);
-        for (int i = 0; i < 6; i++)
-            array[i][t->count] = word[i][lane];
-        t->count++;
+        chunk->triangle[chunk->triangle_count++] = (raster_triangle){.v = {word[0][lane], word[1][lane], word[2][lane]},
+                                                                     .primitive_front = word[3][lane],
+                                                                     .low = word[4][lane],
+                                                                     .high = word[5][lane]};
     }
 }
 
@@ -92,25 +92,22 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
                            primitive | i_sel(front, i_set(INT32_MIN), i_set(0)),
                            x0 | (y0 << 16),
                            x1 | (y1 << 16)};
-    const uint32_t *words[6];
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; i++)
         i_store((int32_t *)(void *)word[i], value[i]);
-        words[i] = word[i];
-    }
     uint32_t kept_bits = m_bits(kept) & live, other = live & ~m_bits(simple);
     scratch->stats.triangles_culled += (uint64_t)__builtin_popcount(live & ~other & ~kept_bits);
     for (; other != 0; other &= other - 1) { /* in order: the simple ones before it, then the other */
         int lane = __builtin_ctz(other);
         uint32_t before = (1u << lane) - 1u;
-        append(&chunk->triangle, kept_bits & before, words);
+        append(chunk, kept_bits & before, word);
         kept_bits &= ~before;
         raster_setup_one(pass, chunk, scratch, first + (uint32_t)lane);
-        if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + AMB_LANES)) {
+        if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + AMB_LANES)) {
             scratch->failed = true;
             return;
         }
     }
-    append(&chunk->triangle, kept_bits, words);
+    append(chunk, kept_bits, word);
 }
 
 void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
@@ -125,11 +122,11 @@ void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scr
             scratch->corner[k][i] = scratch->corner[k][count - 1];
     for (uint32_t first = 0; first < count && !scratch->failed; first += AMB_LANES) {
         uint32_t left = count - first;
-        if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle.count + AMB_LANES)) {
+        if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + AMB_LANES)) {
             scratch->failed = true;
             return;
         }
         setup_group(pass, chunk, scratch, first, left >= AMB_LANES ? AMB_ALL_LANES : (1u << left) - 1u);
     }
-    scratch->stats.triangles_binned += chunk->triangle.count;
+    scratch->stats.triangles_binned += chunk->triangle_count;
 }

@@ -46,14 +46,7 @@ static inline uint32_t find_small(const raster_tile *tile, const raster_chunk *c
 /* Window depth and 1/w of the triangles, as prepare_shading makes them. */
 static inline void prepare_group(raster_shading *s, const edge_group *g, small_group *m, int first, int end)
 {
-    const raster_chunk *chunk = s->chunk;
-    const float *records = (const float *)(const void *)chunk->vertex;
-    f32x z[3], w[3];
-    for (int i = 0; i < 3; i++) {
-        i32x at = i_load((const int32_t *)(const void *)g->number[i]) * (int32_t)chunk->stride;
-        z[i] = f_gather(records, at);
-        w[i] = f_gather(records + 1, at);
-    }
+    const f32x *z = g->z, *w = g->inverse_w;
     m->z0 = z[0], m->dz1 = z[1] - z[0], m->dz2 = z[2] - z[0];
     f32x scale = f_from_bits((254 << 23) - (f_bits(f_max(w[0], f_max(w[1], w[2]))) & 0x7f800000));
     for (int i = 0; i < 3; i++)

@@ -26,19 +26,21 @@ static inline i32x snap(f32x ndc, f32x scale, f32x offset)
     return f_to_i(f_round((ndc * scale + offset) * (float)RASTER_SUBPIXEL));
 }
 
-/* Depth, 1/w and varyings go to one record a vertex. */
+/* Depth, 1/w, window position and varyings go to one record a vertex. */
 static inline void write_records(raster_chunk *chunk, uint32_t first, v4x clip, const float *group)
 {
+    const int32_t *x = chunk->x + first, *y = chunk->y + first;
     const uint32_t floats = (uint32_t)chunk->draw->state.varying_floats, stride = chunk->stride;
     float z[AMB_LANES], inverse_w[AMB_LANES];
     f_store(z, clip.z / clip.w);
     f_store(inverse_w, 1.0f / clip.w);
-    float *record = (float *)(void *)(chunk->vertex + (size_t)first * stride);
+    uint32_t *record = chunk->vertex + (size_t)first * stride;
     for (uint32_t lane = 0; lane < AMB_LANES; lane++, record += stride) {
-        record[0] = z[lane];
-        record[1] = inverse_w[lane];
+        raster_vertex *v = (raster_vertex *)(void *)record;
+        v->z = z[lane], v->inverse_w = inverse_w[lane];
+        v->x = x[lane], v->y = y[lane];
         for (uint32_t k = 0; k < floats; k++)
-            record[RASTER_VERTEX_WORDS + k] = group[k * AMB_LANES + lane];
+            v->varying[k] = group[k * AMB_LANES + lane];
     }
 }
 
