@@ -180,6 +180,14 @@ static inline f32x permute(f32x a, i32x index)
 }
 static inline i32x permute_i(i32x a, i32x index) { return f_bits(permute(f_from_bits(a), index)); }
 
+#if AMB_LANES == 16
+/* The kept lanes moved together, in order; 0 after them. */
+static inline i32x i_compress(i32x a, maskx kept)
+{
+    return (i32x)_mm512_maskz_compress_epi32((__mmask16)m_bits(kept), (__m512i)a);
+}
+#endif
+
 /* Lane `component` of every quad, to all lanes of the quad. */
 #if AMB_LANES == 16
 #define QUAD_SPLAT(a, component) ((f32x)_mm512_permute_ps((__m512)(a), 0x55 * (component)))

@@ -96,8 +96,31 @@ static inline void list_quads(const raster_tile *tile, const edge_group *g, smal
             i_store(m->quad + m->count + k, i_load(offset + k) + corner[n]);
         m->count += quads[n];
     }
-    i_store(m->quad + m->count, i_set(first)); /* whatever follows is a quad of some triangle */
 }
+
+#if AMB_LANES == 16
+/* Drops the quads that lie wholly outside some edge: a lane a quad, which is tested at its innermost pixel. */
+static inline void sieve_quads(small_group *m)
+{
+    i32x innermost[3];
+    for (int i = 0; i < 3; i++)
+        innermost[i] = m->c[i] + i_max(m->a[i], i_set(0)) + i_max(m->b[i], i_set(0));
+    int kept = 0;
+    for (int first = 0; first < m->count; first += AMB_LANES) {
+        i32x quad = i_load(m->quad + first), triangle = quad & 255, x = quad >> 8 & 255, y = quad >> 16;
+        i32x outside = i_set(0);
+        for (int i = 0; i < 3; i++)
+            outside |=
+                permute_i(innermost[i], triangle) + permute_i(m->a[i], triangle) * x + permute_i(m->b[i], triangle) * y;
+        maskx inside = (outside >= 0) & (i_lane_index() < m->count - first);
+        i_store(m->quad + kept, i_compress(quad, inside)); /* never past what was read */
+        kept += __builtin_popcount(m_bits(inside));
+    }
+    m->count = kept;
+}
+#else
+static inline void sieve_quads(small_group *m) { (void)m; }
+#endif
 
 /* Where the lanes' quads lie in the tile. */
 static inline void locate_quads(const raster_tile *tile, i32x x, i32x y, raster_quads *q)
@@ -198,6 +221,8 @@ static void play_small(const raster_tile *tile, raster_shading *s, raster_queue 
         for (int n = 0; n < AMB_LANES; n++)
             m.varying[k][n] = raster_vertex_at(s->chunk, g->number[k][n])->varying;
     list_quads(tile, g, &m, first, end);
+    sieve_quads(&m);
+    i_store(m.quad + m.count, i_set(first)); /* whatever follows is a quad of some triangle */
     for (int i = 0; i < m.count; i += RASTER_QUADS)
         play_row(tile, s->draw, queue, &m, i);
 }
