@@ -240,9 +240,8 @@ static size_t ready_bytes(const amb_pass *pass, const raster_chunk *chunk)
     size_t entries = chunk->binned ? 2 * tiles + chunk->tile_start[tiles] : 0;
     if (chunk->count == 0 || chunk->large_count > 0)
         entries += (chunk->count ? chunk->large_count : 0) + tiles;
-    return sizeof *chunk +
-           ((size_t)chunk->vertex_count * (chunk->stride + 2) + (size_t)chunk->triangle_count * 6) * sizeof(uint32_t) +
-           entries * sizeof(uint16_t);
+    return sizeof *chunk + (size_t)chunk->vertex_count * (chunk->stride + 2) * sizeof(uint32_t) +
+           (size_t)chunk->triangle_count * sizeof(raster_triangle) + entries * sizeof(uint16_t);
 }
 
 /* Makes room in the batch for `more` bytes: first by finding out what its chunks really hold, then by playing it. */
