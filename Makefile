@@ -174,8 +174,8 @@ golden-check: $(BUILD)/golden
 golden: ## re-render the manifest: {gcc, clang} x {v2, v3, v4} x {1, 2, 5 threads}
 	$(MAKE) CC=clang golden-check
 	$(MAKE) CC=gcc BUILD=$(BUILD)/gcc golden-check
-golden-update: $(BUILD)/golden ## rewrite the manifest from this build
-	$(BUILD)/golden update tests/golden/manifest
+golden-update: $(BUILD)/golden ## rewrite the manifest from this build (SCENE=name: its rows only)
+	$(BUILD)/golden update tests/golden/manifest $(SCENE)
 
 # ---- jobs -----------------------------------------------------------------------------------------------------------
 .PHONY: help deps assets demo bench lint format clean

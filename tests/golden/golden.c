@@ -1,7 +1,7 @@
 /* The golden manifest: SHA-256 of the float pixels of every scene, with built-in assets and default parameters.
  *
  *   golden check MANIFEST [SCENE]   renders every row at every instruction set of this processor and 1, 2, 5 threads
- *   golden update MANIFEST          writes the manifest anew, if all of those agree
+ *   golden update MANIFEST [SCENE]  writes the manifest anew, or one scene's rows, if all of those agree
  *
  * Each line of the manifest: SCENE TIME WIDTHxHEIGHT LAYER SHA256, the hash being that of amb_image_sha256. The layer
  * "post" is color after the scene's own chain. */
@@ -139,6 +139,10 @@ static void check_layer(manifest *m, const char *scene, const golden_case *c, co
         m->wrong++;
         return;
     }
+    if (m->is_update && !known->was_seen) { /* read from the manifest, to be replaced */
+        snprintf(known->sha256, sizeof known->sha256, "%s", sha256);
+        snprintf(known->made_by, sizeof known->made_by, "%s", configuration);
+    }
     known->was_seen = true;
     if (strcmp(known->sha256, sha256) != 0) {
         fprintf(stderr, "%s: %s gives %.16s..., %s has %.16s...\n", key, configuration, sha256, known->made_by,
@@ -255,15 +259,15 @@ static int check_all(manifest *m, const char *only)
 int main(int argc, char **argv)
 {
     manifest m = {0};
-    bool is_check = argc >= 3 && argc <= 4 && strcmp(argv[1], "check") == 0;
-    if (!is_check && (argc != 3 || strcmp(argv[1], "update") != 0)) {
-        fprintf(stderr, "usage: golden check MANIFEST [SCENE] | golden update MANIFEST\n");
+    m.is_update = argc >= 3 && strcmp(argv[1], "update") == 0;
+    if (argc < 3 || argc > 4 || (!m.is_update && strcmp(argv[1], "check") != 0)) {
+        fprintf(stderr, "usage: golden check|update MANIFEST [SCENE]\n");
         return 2;
     }
-    m.is_update = !is_check;
-    int code = m.is_update ? 0 : read_manifest(&m, argv[2]);
+    const char *only = argc == 4 ? argv[3] : NULL; /* an update of one scene keeps the others' rows */
+    int code = m.is_update && !only ? 0 : read_manifest(&m, argv[2]);
     if (code == 0)
-        code = check_all(&m, argc == 4 ? argv[3] : NULL);
+        code = check_all(&m, only);
     if (code == 0 && m.is_update)
         code = write_manifest(&m, argv[2]);
     printf("golden: " COMPILER ": %d layers rendered, %d wrong; %d rows\n", m.compared, m.wrong, m.count);
