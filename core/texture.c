@@ -149,7 +149,7 @@ amb_status amb_texture_create(const amb_texture_desc *desc, amb_texture **out, a
         *out = NULL;
     if (!desc || !out)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "texture: %s is NULL", desc ? "out" : "desc");
-    amb_texture_info info;
+    amb_texture_info info = {0};
     amb_status status = check_desc(desc, &info, error);
     if (status)
         return status;
@@ -338,16 +338,19 @@ amb_status amb_texture_to_image(const amb_texture *t, int level, int slice, amb_
                         level, level_slices(&t->info, level) - 1);
     int width = level_size(t->info.width, level), height = level_size(t->info.height, level);
     v4 *row = malloc((size_t)width * sizeof *row);
-    amb_status status = row ? amb_image_create(width, height, texel_channels(t->info.texel), out, error)
-                            : amb_fail(error, AMB_ERROR_MEMORY, "texture: no memory");
+    if (!row)
+        return amb_fail(error, AMB_ERROR_MEMORY, "texture: no memory");
+    amb_image *image = NULL;
+    amb_status status = amb_image_create(width, height, texel_channels(t->info.texel), &image, error);
     float linear[256], edges[256];
     srgb_tables(linear, edges);
-    for (int y = 0; y < height && status == AMB_OK; y++) {
+    for (int y = 0; image && y < height; y++) {
         unpack_row(t, linear, edges, texel_at(t, level, 0, y, slice), row, width);
-        for (int c = 0; c < (*out)->channels; c++)
+        for (int c = 0; c < image->channels; c++)
             for (int x = 0; x < width; x++)
-                amb_image_row(*out, c, y)[x] = (&row[x].x)[c];
+                amb_image_row(image, c, y)[x] = (&row[x].x)[c];
     }
     free(row);
+    *out = image;
     return status;
 }

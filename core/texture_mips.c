@@ -141,14 +141,12 @@ static const int face_axis[6][3][3] = {
  * edge lands at n sideways and n - 1 up. */
 static const uint32_t *neighbour_texel(const amb_texture *t, int level, int face, int x, int y)
 {
-    int n = level_size(t->info.width, level), s = 2 * x + 1 - n, v = 2 * y + 1 - n, up = n;
-    if (x < 0 || x >= n) {
+    int n = level_size(t->info.width, level), s = 2 * x + 1 - n, v = 2 * y + 1 - n;
+    const int up = n - 1;
+    if (x < 0 || x >= n)
         s = x < 0 ? -n : n;
-        up = n - 1;
-    } else {
+    else
         v = y < 0 ? -n : n;
-        up = n - 1;
-    }
     int point[3];
     for (int k = 0; k < 3; k++)
         point[k] = s * face_axis[face][0][k] + v * face_axis[face][1][k] + up * face_axis[face][2][k];

@@ -67,20 +67,24 @@ static bool same_pixels(const raster_attachment *a, const raster_attachment *b)
     return a->texture && a->texture == b->texture && a->level == b->level && a->slice == b->slice;
 }
 
-/* Completes an attachment of which the place is known: sizes must agree, no other may be at the same place. */
+/* Completes an attachment of which the place, if any, is known: sizes must agree, no other may be at the same place. */
 static amb_status check_attachment(amb_pass *pass, raster_attachment *a, const char *name, int number, amb_error *error)
 {
-    const char *kind = a->image ? "image" : "texture";
-    if (a->image && !a->image->data)
+    const amb_image *image = a->image;
+    const amb_texture *texture = a->texture;
+    const char *kind = image ? "image" : "texture";
+    if (!image && !texture)
+        return AMB_OK;
+    if (image && !image->data)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s image %d has no pixels; data is NULL", name, number);
-    if (a->image && (a->image->channels < 1 || a->image->channels > AMB_MAX_CHANNELS))
+    if (image && (image->channels < 1 || image->channels > AMB_MAX_CHANNELS))
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s image %d has %d channels; 1 to %d are allowed", name,
-                        number, a->image->channels, AMB_MAX_CHANNELS);
-    amb_status status = a->texture ? check_texture(a, name, number, error) : AMB_OK;
+                        number, image->channels, AMB_MAX_CHANNELS);
+    amb_status status = texture ? check_texture(a, name, number, error) : AMB_OK;
     if (status != AMB_OK)
         return status;
-    int width = a->image ? a->image->width : level_size(a->texture->info.width, a->level);
-    int height = a->image ? a->image->height : level_size(a->texture->info.height, a->level);
+    int width = image ? image->width : level_size(texture->info.width, a->level);
+    int height = image ? image->height : level_size(texture->info.height, a->level);
     if (width < 1 || height < 1 || width > AMB_MAX_IMAGE_SIZE || height > AMB_MAX_IMAGE_SIZE)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: %s %s %d is %d×%d; sizes of 1 to %d are allowed", name,
                         kind, number, width, height, AMB_MAX_IMAGE_SIZE);
@@ -90,9 +94,9 @@ static amb_status check_attachment(amb_pass *pass, raster_attachment *a, const c
         return amb_fail(error, AMB_ERROR_ARGUMENT,
                         "target: %s %s %d is %d×%d, the first attachment is %d×%d; all must agree", name, kind, number,
                         width, height, pass->width, pass->height);
-    a->channels = a->image ? a->image->channels : texel_channels(a->texture->info.texel);
-    a->format = a->texture ? format_of(a->texture->info.texel) : RASTER_FLOAT;
-    if (a->image && a->channels != 1 && a->first < 1 + pass->stencil_plane)
+    a->channels = image ? image->channels : texel_channels(texture->info.texel);
+    a->format = texture ? format_of(texture->info.texel) : RASTER_FLOAT;
+    if (image && a->channels != 1 && a->first < 1 + pass->stencil_plane)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: the %s image has %d channels; it must have 1", name,
                         a->channels);
     for (int k = 0; k < pass->target_count; k++)
@@ -129,15 +133,13 @@ static amb_status check_depth_stencil(amb_pass *pass, amb_error *error)
 {
     const amb_target *t = &pass->target;
     raster_attachment *depth = &pass->depth, *stencil = &pass->stencil;
-    amb_status status = AMB_OK;
     *depth = (raster_attachment){.image = t->depth, .texture = t->depth_texture.texture};
     depth->level = t->depth_texture.level, depth->slice = t->depth_texture.slice;
     *stencil = (raster_attachment){.image = t->stencil, .first = 1};
     if (depth->image && depth->texture)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "target: depth is both an image and a texture");
-    if (depth->image || depth->texture)
-        status = check_attachment(pass, depth, "depth", 0, error);
-    if (status == AMB_OK && stencil->image)
+    amb_status status = check_attachment(pass, depth, "depth", 0, error);
+    if (status == AMB_OK)
         status = check_attachment(pass, stencil, "stencil", 0, error);
     if (status != AMB_OK)
         return status;

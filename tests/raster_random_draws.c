@@ -110,9 +110,9 @@ static void truth_patches(random_pass *p, const random_draw *d, int instance)
 
 static void truth_primitives(random_pass *p, const random_draw *d, int instance)
 {
-    int at[3], corners;
+    int at[3] = {0}, corners;
     for (int n = 0; (corners = corners_of(d->state.topology, n, (int)d->state.count, at)) > 0; n++, p->primitive++) {
-        float clip[3][4];
+        float clip[3][4] = {{0}};
         bool valid = true;
         for (int k = 0; k < corners; k++)
             valid = valid && corner_at(d, at[k], instance, clip[k]);

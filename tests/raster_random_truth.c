@@ -255,7 +255,7 @@ static void truth_fill_samples(random_pass *p, const truth_triangle *t)
         {0, 0}, {4, 4, -4, -4}, {-2, -6, 6, -2, -6, 2, 2, 6}, {1, -3, -1, 3, 5, 1, -3, -5, -5, 5, -7, -1, 3, 7, 7, -7}};
     const int8_t *at = positions[p->samples == 1 ? 0 : p->samples == 2 ? 1 : p->samples == 4 ? 2 : 3];
     sample_mask m = {p->mask, p->width, 0};
-    memset(p->mask, 0, (size_t)(p->width * p->height));
+    memset(p->mask, 0, (size_t)p->width * (size_t)p->height);
     for (; m.sample < p->samples; m.sample++)
         truth_fill_sample(t, p->width, p->height, at[2 * m.sample], at[2 * m.sample + 1], add_sample, &m);
     for (int i = 0; i < p->width * p->height; i++)

@@ -74,8 +74,8 @@ static bool random_triangle(fixture *f, bool cube)
     truth_triangle pieces[7];
     double repeat = exp2(uniform(0, 3)), spread = uniform(20, 120);
     for (int i = 0; i < 3; i++) {
-        double w = exp(uniform(-1, 1)), x = SIZE / 2 + uniform(-spread, spread),
-               y = SIZE / 2 + uniform(-spread, spread);
+        double w = exp(uniform(-1, 1)), x = SIZE / 2.0 + uniform(-spread, spread),
+               y = SIZE / 2.0 + uniform(-spread, spread);
         f->vertex[i].clip =
             (v4){(float)((x / (SIZE * 0.5) - 1) * w), (float)((1 - y / (SIZE * 0.5)) * w), (float)(0.5 * w), (float)w};
         f->vertex[i].value = (v4){(float)uniform(-repeat, repeat), (float)uniform(-repeat, repeat), (float)repeat, 1};
@@ -251,7 +251,8 @@ static void vertices_fetch_texels(void **state)
         const raster_test_shaders *shaders = raster_test_shaders_of(isas[i]);
         raster_test_vertex *vertex = calloc(SIZE * SIZE, sizeof *vertex);
         for (int n = 0; n < SIZE * SIZE; n++) {
-            double x = n % SIZE + 0.5, y = n / SIZE + 0.5;
+            int row = n / SIZE;
+            double x = n % SIZE + 0.5, y = row + 0.5;
             vertex[n].clip = (v4){(float)(x / (SIZE * 0.5) - 1), (float)(1 - y / (SIZE * 0.5)), 0.5f, 1};
             vertex[n].value = (v4){(float)uniform(-1, 2), (float)uniform(-1, 2), (float)uniform(-1, 6), 0};
         }
