@@ -60,7 +60,7 @@ typedef struct bench_workload {
 extern const bench_workload *const bench_workloads[]; /* NULL-ended; the first two measure the machine's peaks */
 extern const bench_workload bench_flops, bench_copy, bench_julia, bench_earth;
 extern const bench_workload bench_layers, bench_mesh, bench_mesh_million, bench_mesh_samples, bench_tiny, bench_shadow;
-extern const bench_workload bench_draws, bench_memory, bench_elevated;
+extern const bench_workload bench_draws, bench_memory, bench_elevated, bench_patches;
 extern const bench_workload bench_post_bloom, bench_post_mlaa, bench_post_chain;
 
 /* The table of scenes; not 0 when one failed. json: objects of a list that the caller opens and closes. */

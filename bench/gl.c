@@ -98,17 +98,17 @@ static amb_status compile(GLenum stage, const char *source, GLuint *out, amb_err
                     stage == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
 }
 
-amb_status gl_program(const char *vertex, const char *fragment, GLuint *out, amb_error *error)
+amb_status gl_program_of(const gl_stage *stage, int stages, GLuint *out, amb_error *error)
 {
-    GLuint shader[2] = {0, 0};
+    GLuint shader[4] = {0};
+    amb_status status = AMB_OK;
     *out = 0;
-    amb_status status = compile(GL_VERTEX_SHADER, vertex, &shader[0], error);
-    if (!status)
-        status = compile(GL_FRAGMENT_SHADER, fragment, &shader[1], error);
+    for (int i = 0; i < stages && !status; i++)
+        status = compile(stage[i].kind, stage[i].source, &shader[i], error);
     if (!status) {
         GLuint program = glCreateProgram();
-        glAttachShader(program, shader[0]);
-        glAttachShader(program, shader[1]);
+        for (int i = 0; i < stages; i++)
+            glAttachShader(program, shader[i]);
         glLinkProgram(program);
         GLint linked = 0;
         glGetProgramiv(program, GL_LINK_STATUS, &linked);
@@ -121,9 +121,15 @@ amb_status gl_program(const char *vertex, const char *fragment, GLuint *out, amb
             status = amb_fail(error, AMB_ERROR_FORMAT, "the peer's program: %s", log);
         }
     }
-    glDeleteShader(shader[0]);
-    glDeleteShader(shader[1]);
+    for (int i = 0; i < stages; i++)
+        glDeleteShader(shader[i]);
     return status;
+}
+
+amb_status gl_program(const char *vertex, const char *fragment, GLuint *out, amb_error *error)
+{
+    const gl_stage stages[2] = {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}};
+    return gl_program_of(stages, 2, out, error);
 }
 
 static amb_status check_frame(const gl_target *t, const char *what, amb_error *error)

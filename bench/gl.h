@@ -15,6 +15,12 @@ const char *gl_renderer(const gl *context);
 
 /* Compiles and links; the sources lack their #version line. Errors: FORMAT with the compiler's words. */
 amb_status gl_program(const char *vertex, const char *fragment, GLuint *out, amb_error *error);
+/* The same of any stages, four at most. */
+typedef struct gl_stage {
+    GLenum kind;
+    const char *source;
+} gl_stage;
+amb_status gl_program_of(const gl_stage *stage, int stages, GLuint *out, amb_error *error);
 /* A target of RGBA halves with a float depth buffer, bound. */
 typedef struct gl_target {
     GLuint frame, color, depth; /* renderbuffers; of a depth-only target a texture */
