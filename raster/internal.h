@@ -32,11 +32,11 @@
 #define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
 #define RASTER_PATCH_WINDOW 16384 /* patches hull-shaded at a time, at most */
 #define RASTER_PATCH_BYTES ((size_t)8 << 20)
-#define RASTER_POLYGON 9          /* vertices of a triangle clipped by six planes */
-#define RASTER_LARGE_TILES 16     /* triangles on more tiles than this are not binned but offered to every tile */
-#define RASTER_MAX_TILE 128       /* pixels, tile edge */
-#define RASTER_BATCH_CHUNKS 16384 /* their numbers fit 16 bits */
-#define RASTER_UNBINNED 64        /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
+#define RASTER_POLYGON 9         /* vertices of a triangle clipped by six planes */
+#define RASTER_LARGE_TILES 16    /* triangles on more tiles than this are not binned but offered to every tile */
+#define RASTER_MAX_TILE 128      /* pixels, tile edge */
+#define RASTER_BATCH_CHUNKS 2048 /* more would not use their memory again; their numbers fit 16 bits */
+#define RASTER_UNBINNED 64       /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
 #define RASTER_MAX_POINT 4096.0f
 #define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */

@@ -10,7 +10,7 @@ bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_by
 {
     if (needed <= *capacity)
         return true;
-    size_t wanted = *capacity < 16 ? 16 : *capacity;
+    size_t wanted = *capacity > 0 ? *capacity : needed; /* many arrays never grow */
     while (wanted < needed)
         wanted *= 2;
     if (wanted > SIZE_MAX / element_bytes)

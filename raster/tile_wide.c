@@ -258,6 +258,27 @@ static void play_chunk(raster_tile *tile, raster_shading *s, raster_queue *queue
     }
 }
 
+/* Small draws' chunks lie far apart: what the tile will read of the coming ones is asked for in time. */
+static inline void prefetch_chunks(const amb_pass *pass, const uint16_t *next, const uint16_t *end)
+{
+    if (end - next > 4)
+        for (size_t line = 0; line < sizeof(raster_chunk); line += 64)
+            __builtin_prefetch((const char *)&pass->chunk[next[4]] + line);
+    if (end - next > 2) {
+        const raster_chunk *chunk = &pass->chunk[next[2]];
+        const char *state = (const char *)chunk->draw;
+        for (size_t line = 0; line < sizeof *chunk->draw; line += 64)
+            __builtin_prefetch(state + line);
+        if (chunk->count == 0)
+            return;
+        __builtin_prefetch(chunk->large);
+        for (uint32_t i = 0; i < 8; i++) {
+            __builtin_prefetch((const char *)chunk->triangle + 64 * i);
+            __builtin_prefetch((const char *)chunk->vertex + 64 * i);
+        }
+    }
+}
+
 void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch, int thread)
 {
     raster_tile tile = {.pass = pass, .data = scratch->tile, .thread = thread, .stats = &scratch->stats};
@@ -286,6 +307,7 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     const uint16_t *end = pass->tile_chunk + pass->tile_first[number + 1];
     while (next < end) {
         size_t screens = 0;
+        prefetch_chunks(pass, next, end);
         while (next + screens < end && pass->chunk[next[screens]].count == 0)
             screens++;
         if (screens > 0) {
