@@ -26,15 +26,21 @@ static float clip_component(random_pass *p, float plain)
     return n < 8 ? hostile[n] : plain;
 }
 
-static void random_vertices(random_pass *p, random_draw *d)
+/* Sets whether all have one depth, and returns whether they lie close together: then triangles are of a few pixels, one
+ * over the other, and there may be many. */
+static bool random_vertices(random_pass *p, random_draw *d)
 {
     int kind = number(p, 4);
     float z = (float)number(p, 33) * 0.03125f;
+    const bool cluster = number(p, 3) == 0;
+    const double middle_x = number(p, 256) / 256.0 * p->width, middle_y = number(p, 256) / 256.0 * p->height;
     d->flat = kind < 2;
     for (int i = 0; i < MAX_VERTICES; i++) {
         v4 *c = &d->vertex[i].clip;
-        double reach = kind == 1 ? 2000.0 : 1.0;
+        double reach = kind == 1 && !cluster ? 2000.0 : 1.0;
         double x = (number(p, 1024) - 128) / 768.0 * p->width, y = (number(p, 1024) - 128) / 768.0 * p->height;
+        if (cluster)
+            x = middle_x + (number(p, 512) - 256) / 64.0, y = middle_y + (number(p, 512) - 256) / 64.0;
         double w = d->flat ? 1.0 : (number(p, 512) - 100) / 128.0;
         c->x = (float)((x * reach / (p->width * 0.5) - 1.0) * w);
         c->y = (float)((1.0 - y * reach / (p->height * 0.5)) * w);
@@ -44,6 +50,7 @@ static void random_vertices(random_pass *p, random_draw *d)
             *c = (v4){clip_component(p, c->x), clip_component(p, c->y), clip_component(p, c->z),
                       clip_component(p, c->w)};
     }
+    return cluster;
 }
 
 static void random_output(random_pass *p, amb_draw *s)
@@ -100,15 +107,15 @@ static void random_patches(random_pass *p, const raster_test_shaders *shaders, r
 static void random_draw_state(random_pass *p, const raster_test_shaders *shaders, random_draw *d)
 {
     amb_draw *s = &d->state;
-    random_vertices(p, d);
+    const int most = random_vertices(p, d) ? MAX_INDICES : MAX_INDICES / 4;
     *s = (amb_draw){.lanes = shaders->lanes, .vertex = shaders->vertex, .varying_floats = 4};
     s->topology = (amb_topology)number(p, 6);
     s->count = (uint32_t)number(p, MAX_VERTICES + 1);
     if (number(p, 2)) {
         s->indices = d->index;
         s->vertex_count = (uint32_t)(1 + number(p, MAX_VERTICES));
-        s->count = (uint32_t)number(p, MAX_INDICES + 1);
-        for (int i = 0; i < MAX_INDICES; i++)
+        s->count = (uint32_t)number(p, most + 1);
+        for (int i = 0; i < most; i++)
             d->index[i] = number(p, 16) == 0 ? UINT32_MAX : (uint32_t)number(p, MAX_VERTICES);
     }
     s->instances = (uint32_t)number(p, 4);

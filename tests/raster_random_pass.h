@@ -7,7 +7,7 @@
 
 #define MAX_DRAWS 6
 #define MAX_VERTICES 24
-#define MAX_INDICES 36
+#define MAX_INDICES 144
 #define MAX_COLORS 9
 
 typedef struct random_draw {
