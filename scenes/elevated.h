@@ -30,7 +30,7 @@ typedef struct elevated_params {
     terrain_snow_edges snow;
     float snow_height, snow_scale;
     v3 snow_color, land_color, strata_color, valley_color;
-    float texture, roughness;
+    float texture, roughness, crags;
     int tiles;
     float speed, clearance, sight, fov; /* flight */
     int wireframe, samples;

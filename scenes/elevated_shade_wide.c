@@ -117,6 +117,22 @@ AMB_INLINE f32x ground_snow(const elevated_uniforms *u, f32x normal_y, f32x y, f
     return terrain_snow(normal_y, noise + y * (u->params->snow_height / u->params->height), u->params->snow);
 }
 
+/* Slope, in those of Z, of the relief that bare rock has besides: noise over the plane, and crags, noise over a
+ * vertical plane, so that cliffs are not smooth downwards: the slope of c(k·(x, z), y) with y the ground's own height;
+ * none on level ground, where it would be stripes. */
+AMB_INLINE v2x rock_relief(const elevated_uniforms *u, v3x world, v2x slope, v2x speckle, f32x pixel)
+{
+    const elevated_params *s = u->params;
+    const float along_x = 0.6f, along_z = 0.8f, scale = 2.0f * s->snow_scale, per_height = 1.0f / s->height;
+    v2x at = {(world.x * along_x + world.z * along_z) * scale, world.y * scale};
+    v2x crag = terrain_at(&u->speckle, at, octaves_down_to(pixel * (s->detail * scale), 7)).slope;
+    f32x flat = f_set(s->roughness * s->snow_scale * per_height);
+    f32x level = f_smoothstep(f_set(0.55f), f_set(0.92f), terrain_normal(slope, s->height).y);
+    f32x steep = (1.0f - level) * (s->crags * scale * per_height);
+    return (v2x){speckle.x * flat + steep * (crag.x * along_x + crag.y * (slope.x * s->height)),
+                 speckle.y * flat + steep * (crag.x * along_z + crag.y * (slope.y * s->height))};
+}
+
 /* A tile of texture in the plane of two coordinates, relative to its mean. */
 AMB_INLINE v3x tile_at(const elevated_texture *t, f32x x, f32x y)
 {
@@ -217,8 +233,8 @@ void elevated_ground_fragment(const amb_fs_in *in, amb_fs_out *out)
     f32x noise = speckle.height;
 
     f32x snow = ground_snow(u, terrain_normal(fine.slope, s->height).y, world.y, noise);
-    v2x rough = v2x_scale(speckle.slope, (1.0f - snow) * (s->roughness / s->height));
-    v3x normal = terrain_normal(v2x_add(fine.slope, rough), s->height);
+    v2x relief = rock_relief(u, world, fine.slope, speckle.slope, pixel);
+    v3x normal = terrain_normal(v2x_add(fine.slope, v2x_scale(relief, 1.0f - snow)), s->height);
     f32x sunlight = ground_sunlight(u, p, octaves, coarse);
     f32x occlusion = terrain_occlusion(normal.y, s->occlusion_power, s->occlusion_floor);
     v3x albedo = ground_albedo(u, world, normal, snow, noise, pixel);
