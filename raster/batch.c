@@ -146,7 +146,11 @@ static bool reserve(raster_chunk *chunk, const raster_scratch *scratch)
     size_t vertices = scratch->unique_count, triangles = scratch->corner_count;
     if (g->shader)
         vertices = triangles = (triangles + 15) / 16 * 16 * (size_t)g->vertices;
-    return raster_reserve_vertices(chunk, vertices + 16) && raster_reserve_triangles(chunk, triangles + 16);
+    vertices += 16, triangles += 16;
+    return raster_renew(&chunk->x, &chunk->x_capacity, vertices, sizeof *chunk->x) &&
+           raster_renew(&chunk->y, &chunk->y_capacity, vertices, sizeof *chunk->y) &&
+           raster_renew(&chunk->vertex, &chunk->vertex_capacity, vertices * chunk->stride, sizeof *chunk->vertex) &&
+           raster_renew(&chunk->triangle, &chunk->triangle_capacity, triangles, sizeof *chunk->triangle);
 }
 
 static void chunk_job(void *user, int index, int thread)

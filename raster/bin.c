@@ -62,7 +62,7 @@ static void set_bounds(raster_chunk *chunk, unsigned shift)
 static bool leave_unbinned(raster_chunk *chunk)
 {
     const uint32_t count = chunk->triangle_count;
-    if (!raster_grow(&chunk->large, &chunk->large_capacity, (size_t)count + 1, sizeof *chunk->large))
+    if (!raster_renew(&chunk->large, &chunk->large_capacity, (size_t)count + 1, sizeof *chunk->large))
         return false;
     for (uint32_t i = 0; i < count; i++)
         chunk->large[i] = (uint16_t)i;
@@ -81,7 +81,7 @@ void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scrat
             goto error;
         return;
     }
-    if (!raster_grow(&chunk->tile_start, &chunk->tile_capacity, tiles + 1, sizeof *chunk->tile_start))
+    if (!raster_renew(&chunk->tile_start, &chunk->tile_capacity, tiles + 1, sizeof *chunk->tile_start))
         goto error;
     memset(chunk->tile_start, 0, (tiles + 1) * sizeof *chunk->tile_start);
     uint32_t large = count_entries(pass, chunk, shift), entries = 0;
@@ -90,8 +90,8 @@ void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scrat
         chunk->tile_start[i] = entries;
     }
     chunk->tile_start[tiles] = entries;
-    if (!raster_grow(&chunk->entry, &chunk->entry_capacity, (size_t)entries + 1, sizeof *chunk->entry) ||
-        !raster_grow(&chunk->large, &chunk->large_capacity, (size_t)large + 1, sizeof *chunk->large))
+    if (!raster_renew(&chunk->entry, &chunk->entry_capacity, (size_t)entries + 1, sizeof *chunk->entry) ||
+        !raster_renew(&chunk->large, &chunk->large_capacity, (size_t)large + 1, sizeof *chunk->large))
         goto error;
     chunk->large_count = large;
     place_entries(pass, chunk, shift);

@@ -199,6 +199,8 @@ struct amb_pass {
 
 /* Doubling growth of an array to at least `needed` elements; false when out of memory. */
 bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_bytes);
+/* The same for an array whose contents nobody needs: they are not copied. */
+bool raster_renew(void *array, size_t *capacity, size_t needed, size_t element_bytes);
 
 /* Room for that many vertices or triangles in all; false when out of memory. */
 bool raster_reserve_vertices(raster_chunk *chunk, size_t count);

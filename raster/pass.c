@@ -25,6 +25,18 @@ bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_by
     return true;
 }
 
+bool raster_renew(void *array, size_t *capacity, size_t needed, size_t element_bytes)
+{
+    void *old, *none = NULL;
+    if (needed <= *capacity)
+        return true;
+    memcpy(&old, array, sizeof old);
+    free(old);
+    memcpy(array, &none, sizeof none);
+    *capacity = 0;
+    return raster_grow(array, capacity, needed, element_bytes);
+}
+
 /* The largest power of two g with g · half ≤ the guard band's reach: the product with any w is then exact. */
 static float guard_factor(int size)
 {
