@@ -229,6 +229,11 @@ static amb_status memory_facts(void *state, const amb_context *context, bench_fa
     triangles_state *s = state;
     make_draws(s, context);
     for (size_t i = 0, draws = 1; i < 3; i++, draws *= 10) {
+        amb_context *fresh = NULL; /* the other keeps the memory of the passes before */
+        amb_context_options options = {amb_context_isa(context), amb_context_threads(context)};
+        amb_status status = amb_context_create(&options, &fresh, error);
+        if (status)
+            return status;
         malloc_trim(0);
         FILE *reset = fopen("/proc/self/clear_refs", "w");
         if (reset) {
@@ -236,7 +241,8 @@ static amb_status memory_facts(void *state, const amb_context *context, bench_fa
             fclose(reset);
         }
         double before = resident("VmRSS:");
-        amb_status status = picture_pass(&s->picture, context, s->draw, draws, error);
+        status = picture_pass(&s->picture, fresh, s->draw, draws, error);
+        amb_context_close(&fresh);
         if (status)
             return status;
         bench_fact(facts, names[i], resident("VmHWM:") - before, " MiB");

@@ -1,15 +1,22 @@
-#include <ambiance/context.h>
+#include "core/spare.h"
 
 #include <fenv.h>
 #include <omp.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MAX_THREADS 1024
 
+typedef struct spare {
+    _Atomic(void *) block;
+    void (*_Atomic release)(void *block);
+} spare;
+
 struct amb_context {
     amb_isa isa;
     int threads;
+    spare *spare; /* the only part that changes */
 };
 
 int amb_isa_available(amb_isa isa)
@@ -75,17 +82,35 @@ amb_status amb_context_create(const amb_context_options *options, amb_context **
     if (use.threads == 0)
         use.threads = omp_get_num_procs() < MAX_THREADS ? omp_get_num_procs() : MAX_THREADS;
     amb_context *context = malloc(sizeof *context);
-    if (!context)
+    spare *kept = calloc(1, sizeof *kept);
+    if (!context || !kept) {
+        free(context);
+        free(kept);
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for a context");
-    *context = (amb_context){.isa = use.isa, .threads = use.threads};
+    }
+    *context = (amb_context){.isa = use.isa, .threads = use.threads, .spare = kept};
     *out = context;
     return AMB_OK;
 }
 
+void *amb_spare_take(const amb_context *context) { return atomic_exchange(&context->spare->block, NULL); }
+
+void amb_spare_keep(const amb_context *context, void *block, void (*release)(void *block))
+{
+    atomic_store(&context->spare->release, release);
+    void *old = atomic_exchange(&context->spare->block, block);
+    if (old)
+        release(old);
+}
+
 void amb_context_close(amb_context **context)
 {
-    if (!context)
+    if (!context || !*context)
         return;
+    spare *kept = (*context)->spare;
+    if (kept->block)
+        kept->release(kept->block);
+    free(kept);
     free(*context);
     *context = NULL;
 }

@@ -280,6 +280,7 @@ bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk)
     slot->first = next.first, slot->count = next.count;
     slot->patch = next.patch, slot->skipped = next.skipped;
     slot->stride = next.stride;
+    slot->binned = false;
     slot->vertex_count = slot->triangle_count = slot->large_count = 0;
     pass->bytes += more;
     return true;

@@ -1,4 +1,5 @@
 /* A pass: the checked record of a target and its draws. Running it is batch.c's part. */
+#include "core/spare.h"
 #include "raster/internal.h"
 
 #include <stdio.h>
@@ -46,6 +47,8 @@ static float guard_factor(int size)
     return (float)g;
 }
 
+static void take_chunks(amb_pass *pass);
+
 amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
                              amb_pass **out, amb_error *error)
 {
@@ -76,6 +79,7 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
         status = amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory for %d×%d tiles", pass->tiles_x, pass->tiles_y);
         goto error;
     }
+    take_chunks(pass);
     *out = pass;
     return AMB_OK;
 error:
@@ -367,6 +371,46 @@ static void free_chunk(raster_chunk *chunk)
     free(chunk->large);
 }
 
+/* Chunks with their arrays, between two passes of a context. */
+typedef struct spare_chunks {
+    raster_chunk *chunk;
+    size_t count;
+} spare_chunks;
+
+static void release_chunks(void *block)
+{
+    spare_chunks *spare = block;
+    for (size_t i = 0; i < spare->count; i++)
+        free_chunk(&spare->chunk[i]);
+    free(spare->chunk);
+    free(spare);
+}
+
+static void take_chunks(amb_pass *pass)
+{
+    spare_chunks *spare = amb_spare_take(pass->context);
+    if (!spare)
+        return;
+    pass->chunk = spare->chunk;
+    pass->chunk_capacity = spare->count;
+    free(spare);
+}
+
+static void keep_chunks(amb_pass *pass)
+{
+    spare_chunks here = {pass->chunk, pass->chunk_capacity}, *spare = malloc(sizeof *spare);
+    if (!pass->chunk) {
+        free(spare);
+    } else if (spare) {
+        *spare = here;
+        amb_spare_keep(pass->context, spare, release_chunks);
+    } else { /* no memory to remember it: let it go */
+        for (size_t i = 0; i < here.count; i++)
+            free_chunk(&here.chunk[i]);
+        free(here.chunk);
+    }
+}
+
 static void free_scratch(raster_scratch *scratch)
 {
     free(scratch->lookup);
@@ -398,8 +442,7 @@ void amb_pass_close(amb_pass **pass)
     amb_pass *p = *pass;
     for (size_t i = 0; i < p->draw_count; i++)
         free(p->draw[i].uniforms);
-    for (size_t i = 0; i < p->chunk_capacity; i++)
-        free_chunk(&p->chunk[i]);
+    keep_chunks(p);
     for (int i = 0; i < p->threads; i++)
         free_scratch(&p->scratch[i]);
     for (int i = 0; p->tile_store && i < p->tiles_x * p->tiles_y; i++)
@@ -407,7 +450,6 @@ void amb_pass_close(amb_pass **pass)
     free(p->tile_store);
     raster_free_patches(p);
     free(p->draw);
-    free(p->chunk);
     free(p->scratch);
     free(p->tile_started);
     free(p->tile_first);

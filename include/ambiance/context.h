@@ -1,5 +1,6 @@
 /* The context: what every job shares and nobody changes after creation: instruction set, threads. There is no global
- * state; make as many contexts as you like. A context may be used from several threads at once. */
+ * state; make as many contexts as you like. A context may be used from several threads at once. It keeps a pass's
+ * working memory for the next one, some 12 MiB a thread. */
 #ifndef AMBIANCE_CONTEXT_H
 #define AMBIANCE_CONTEXT_H
 
