@@ -224,7 +224,7 @@ static void grass_fragment(const amb_fs_in *in, amb_fs_out *out)
     v3x ahead = {-v->right.y, f_set(0.0f), v->right.x};
     s.normal = v3x_normalize((v3x){ahead.x * 0.35f, f_set(1.0f), ahead.z * 0.35f});
     s.smooth = (v3x){f_set(0.0f), f_set(1.0f), f_set(0.0f)};
-    s.albedo = v3x_mul(v4x_xyz(colour), hill_meadow_tint(f, v->world, f_set(1.0f)));
+    s.albedo = v3x_scale(v3x_mul(v4x_xyz(colour), hill_meadow_tint(f, v->world, f_set(1.0f))), f_set(1.35f));
     s.roughness = f_set(0.5f);
     s.f0 = f_set(0.02f);
     s.open = 0.55f + 0.45f * up;

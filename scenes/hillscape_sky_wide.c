@@ -36,7 +36,7 @@ static cloud cloud_at(const hill_frame *f, v3x direction)
     cloud c;
     c.cover = f_smoothstep(f_set(0.02f), f_set(0.65f), here) * f_smoothstep(f_set(0.01f), f_set(0.11f), direction.y);
     v3x sunlight = v3x_splat(f->light[LIGHT_SUN].rgb), sky = v3x_splat(f->sky_light[0]);
-    c.light = v3x_add(v3x_scale(sunlight, 0.30f * lit + silver * 0.35f), v3x_scale(sky, 0.75f - 0.30f * here));
+    c.light = v3x_add(v3x_scale(sunlight, 0.46f * lit + silver * 0.35f), v3x_scale(sky, 0.85f - 0.30f * here));
     return c;
 }
 
