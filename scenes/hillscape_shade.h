@@ -80,7 +80,9 @@ AMB_INLINE void hill_light(const hill_pass *pass, hill_surface *s, maskx live)
         maskx reached = live & (a.strength > 0.0f) & ((facing > 0.0f) | (s->through > 0.0f));
         if (!m_any(reached))
             continue;
-        s->shadow[i] = shadow_at(&f->shadow[i], v3x_add(s->world, v3x_scale(a.to_light, s->lift)), s->smooth, reached);
+        v3x from = v3x_add(s->world, v3x_scale(a.to_light, s->lift));
+        f32x lit = shadow_at(&f->shadow[i], from, s->smooth, reached);
+        s->shadow[i] = f_sel(reached, lit, f_set(1.0f)); /* other lanes' value would depend on these */
         amb_response r;
         if (f->p.brdf == BRDF_COOK_TORRANCE)
             r = light_cook_torrance(s->normal, a.to_light, s->to_eye, s->roughness, s->f0);

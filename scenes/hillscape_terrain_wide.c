@@ -177,7 +177,7 @@ static void terrain_fragment(const amb_fs_in *in, amb_fs_out *out)
     const terrain_varyings *v = in->varyings;
     hill_surface s = hill_surface_at(pass, v->world);
     if (pass->upside_down)
-        out->live = out->live & (v->world.y > -0.3f);
+        out->live = out->live & (v->world.y > -0.03f);
     terrain_form(f, &s);
     v4x fine = hill_fine_noise(f, s.world), broad = hill_broad_noise(f, s.world);
     f32x weight[GROUND_COUNT];
