@@ -6,8 +6,12 @@
 static const amb_material materials[GROUND_COUNT] = {
     [GROUND_SAND] =
         {.asset = "ground/sand", .size = 9.0f, .bump = 0.35f, .roughness = 0.55f, .f0 = 0.03f, .tint = {1, 1, 1}},
-    [GROUND_GRASS] =
-        {.asset = "ground/grass", .size = 4.5f, .bump = 0.8f, .roughness = 0.6f, .f0 = 0.03f, .tint = {0.82f, 0.82f, 0.85f}},
+    [GROUND_GRASS] = {.asset = "ground/grass",
+                      .size = 4.5f,
+                      .bump = 0.8f,
+                      .roughness = 0.6f,
+                      .f0 = 0.03f,
+                      .tint = {0.82f, 0.82f, 0.85f}},
     [GROUND_ROCK] =
         {.asset = "ground/rock", .size = 13.0f, .bump = 1.3f, .roughness = 0.45f, .f0 = 0.04f, .tint = {1, 1, 1}},
     [GROUND_SNOW] =
