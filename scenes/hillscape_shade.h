@@ -127,13 +127,9 @@ typedef struct hill_air {
 AMB_INLINE hill_air hill_air_along(const hill_pass *pass, v3x direction, f32x distance)
 {
     const hill_frame *f = pass->frame;
-    f32x height = f_set(pass->from.y), climb = direction.y;
-    if (pass->upside_down) { /* the air of the real scene */
-        height = -height;
-        climb = -climb;
-    }
     const float density = 0.00034f, falloff = 1.0f / 140.0f;
-    f32x depth = fog_depth(height, climb, distance, density * f->p.haze, falloff);
+    f32x height = f_set(amb_s_max(pass->from.y, 0.0f)); /* a mirrored ray counts from the water on */
+    f32x depth = fog_depth(height, direction.y, distance, density * f->p.haze, falloff);
     f32x left = f_exp(-depth);
     f32x sunward = f_saturate(v3x_dot(direction, v3x_splat(f->sky.to_sun)));
     f32x glow = sunward * sunward;
@@ -141,6 +137,8 @@ AMB_INLINE hill_air hill_air_along(const hill_pass *pass, v3x direction, f32x di
     glow = glow * glow * 0.35f;
     v3x level =
         v3x_scale(sky_horizon_rgb(&f->sky, (v3x){direction.x, f_set(0.0f), direction.z}), f_set(f->gain * 0.42f));
+    f32x grey = color_luminance(level); /* light of many paths has lost some of its colour */
+    level = v3x_lerp(level, (v3x){grey, grey, grey}, f_set(0.4f));
     v3x colour =
         v3x_add(v3x_add(v3x_splat(f->haze_rgb), level), v3x_scale(v3x_splat(f->light[LIGHT_SUN].rgb), glow * 0.15f));
     return (hill_air){left, v3x_scale(colour, 1.0f - left)};
