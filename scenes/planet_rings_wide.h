@@ -61,11 +61,13 @@ static void planet_rings_fragment(const amb_fs_in *in, amb_fs_out *out)
         light = light * ring_scatter(s.x, f_sel(lit, s.y, s.z), v3x_dot(to_sun, to_eye));
     }
     light = light * planet_rings_sunlight(view, v->world, u->shadow_sharpness);
-    v3x colour = v3x_scale(v3x_mul(v4x_xyz(map), v3x_splat(view->sun_rgb)), light);
+    v3x sunlight = v3x_scale(v3x_splat(view->sun_rgb), light);
     f32x alpha = f_sel((along > 0.0f) & (along < 1.0f), map.w, none);
     out->live = out->live & (alpha > 0.0f);
     planet_put_surface(view, out, &(planet_point){.world = v->world}, v3x_splat(view->axis[1]), v4x_xyz(map), 2.0f);
-    out->color[0] = v4x_of3(colour, alpha);
+    v3x colour = v3x_scale(v3x_mul(v4x_xyz(map), v3x_splat(view->sun_rgb)), light);
+    out->color[0] = planet_shown(view, colour, v4x_xyz(map), v3x_splat(view->axis[1]), sunlight);
+    out->color[0].w = alpha;
 }
 
 AMB_INLINE amb_status planet_rings_draw(amb_pass *pass, const planet_rings *u, amb_error *error)

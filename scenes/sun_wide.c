@@ -61,7 +61,7 @@ static void sun_fragment(const amb_fs_in *in, amb_fs_out *out)
     v3x light = v3x_mul(v3x_scale(map, glow), limb_darkening(u->params, v3x_dot(p.normal, p.to_eye)));
     planet_put_surface(&u->view, out, &p, p.normal, map, 1.0f);
     planet_put(&u->view, out, PLANET_LIGHT, light);
-    out->color[0] = v4x_of3(light, f_set(1.0f));
+    out->color[0] = planet_shown(&u->view, light, map, p.normal, light);
 }
 
 /* Around the disc: brightness by the ray's closest distance to the centre, rays by the angle around it. */
@@ -106,7 +106,8 @@ static amb_status sun_draw(const void *opaque, const void *params, const planet_
                        .depth_write_off = true,
                        .targets_off = ~1u};
     corona.blend[0] = AMB_BLEND_ADD;
-    amb_status status = p->corona > 0.0f ? amb_pass_draw(pass, &corona, error) : AMB_OK;
+    bool has_corona = p->corona > 0.0f && view->show == PLANET_SHOW_BEAUTY;
+    amb_status status = has_corona ? amb_pass_draw(pass, &corona, error) : AMB_OK;
     amb_draw disc = planet_shell_draw("sun", planet_vertex, sun_fragment, &u.view, sizeof u);
     return status == AMB_OK ? amb_pass_draw(pass, &disc, error) : status;
 }
