@@ -61,6 +61,7 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
     if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->group ||
         !s->tile || !s->packing)
         return false;
+    memset(s->group, 0, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
     s->clip_y = s->clip_x + vertices;
     s->clip_z = s->clip_y + vertices;
     s->clip_w = s->clip_z + vertices;
@@ -90,7 +91,7 @@ static bool make_geometry_scratch(raster_scratch *s, size_t primary, size_t emit
 {
     const size_t corners = RASTER_CHUNK_EMITTED + 16;
     s->primary = malloc(primary * (RASTER_CHUNK_VERTICES + 16) * sizeof *s->primary);
-    s->emitted = calloc(emitted * 16, sizeof *s->emitted);
+    s->emitted = calloc((emitted + 3) * 16, sizeof *s->emitted); /* varyings are read by four */
     s->other_memory = malloc(4 * corners * sizeof *s->other_memory);
     if (!s->primary || !s->emitted || !s->other_memory)
         return false;
