@@ -168,7 +168,8 @@ static void ground_stays_where_it_was(void **state)
     amb_terrain_place(&here, &noise, 7, 1.0f, true, place.x, place.z);
     amb_terrain_place(&next, &noise, 7, 1.0f, true, place.x, place.z - 1);
     for (int i = 0; i < 400; i++) {
-        v2x p = {(float)(i % 20) * 0.31f - 3.0f, (float)(i / 20) * 0.29f - 3.0f};
+        int row = i / 20;
+        v2x p = {(float)(i % 20) * 0.31f - 3.0f, (float)row * 0.29f - 3.0f};
         float a = terrain_at(&here, p, 12.0f).height, b = terrain_at(&next, (v2x){p.x, p.y + 1.0f}, 12.0f).height;
         assert_true(fabsf(a - b) < 1e-5f);
     }
@@ -207,7 +208,8 @@ static void ground_does_not_swim(void **state)
             continue;
         amb_terrain_place(&u.ground, &noise, (uint32_t)params.seed, params.erosion, true, a.x, a.z);
         for (int i = 0; i < COUNT; i++) { /* from 0.25 to 30 cells ahead */
-            float distance = 0.25f * powf(120.0f, (float)(i / 64) / 63.0f), side = ((float)(i % 64) - 31.5f) / 63.0f;
+            int row = i / 64;
+            float distance = 0.25f * powf(120.0f, (float)row / 63.0f), side = ((float)(i % 64) - 31.5f) / 63.0f;
             x[i] = a.eye.x + distance * side;
             z[i] = a.eye.z - distance;
         }
