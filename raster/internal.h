@@ -164,6 +164,8 @@ typedef struct raster_patches {
     int32_t *corners;              /* [group][corner][lane] */
 } raster_patches;
 
+typedef struct raster_spare raster_spare; /* pass.c */
+
 struct amb_pass {
     const amb_context *context;
     amb_target target;
@@ -187,6 +189,7 @@ struct amb_pass {
 
     raster_chunk *chunk;
     size_t chunk_count, chunk_capacity; /* of the batch being run; those above keep their memory for the next */
+    raster_spare *spare;                /* where they wait for the context's next pass */
     size_t chunks_ready;                /* of those, through the geometry stages */
     size_t bytes;                       /* what the batch's chunks hold, or may come to hold */
     uint32_t *tile_first;               /* tiles + 1: where each tile's chunks start in tile_chunk */

@@ -47,7 +47,55 @@ static float guard_factor(int size)
     return (float)g;
 }
 
-static void take_chunks(amb_pass *pass);
+static void free_chunk(raster_chunk *chunk)
+{
+    free(chunk->x);
+    free(chunk->y);
+    free(chunk->vertex);
+    free(chunk->triangle);
+    free(chunk->tile_start);
+    free(chunk->entry);
+    free(chunk->large);
+}
+
+/* Chunks with their arrays, between two passes of a context. */
+struct raster_spare {
+    raster_chunk *chunk;
+    size_t count;
+};
+
+static void release_chunks(void *block)
+{
+    raster_spare *spare = block;
+    for (size_t i = 0; i < spare->count; i++)
+        free_chunk(&spare->chunk[i]);
+    free(spare->chunk);
+    free(spare);
+}
+
+/* The chunks of a pass before, or none; false when out of memory. */
+static bool take_chunks(amb_pass *pass)
+{
+    pass->spare = amb_spare_take(pass->context);
+    if (!pass->spare)
+        pass->spare = calloc(1, sizeof *pass->spare);
+    if (!pass->spare)
+        return false;
+    pass->chunk = pass->spare->chunk;
+    pass->chunk_capacity = pass->spare->count;
+    return true;
+}
+
+static void keep_chunks(amb_pass *pass)
+{
+    if (!pass->spare)
+        return;
+    *pass->spare = (raster_spare){pass->chunk, pass->chunk_capacity};
+    if (pass->chunk)
+        amb_spare_keep(pass->context, pass->spare, release_chunks);
+    else
+        free(pass->spare);
+}
 
 amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
                              amb_pass **out, amb_error *error)
@@ -75,11 +123,10 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
     pass->tile_first = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y + 1, sizeof *pass->tile_first);
     if (pass->samples > 1)
         pass->tile_store = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y, sizeof *pass->tile_store);
-    if (!pass->tile_started || !pass->tile_first || (pass->samples > 1 && !pass->tile_store)) {
+    if (!take_chunks(pass) || !pass->tile_started || !pass->tile_first || (pass->samples > 1 && !pass->tile_store)) {
         status = amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory for %d×%d tiles", pass->tiles_x, pass->tiles_y);
         goto error;
     }
-    take_chunks(pass);
     *out = pass;
     return AMB_OK;
 error:
@@ -358,57 +405,6 @@ amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
         record.state.depth_compare = record.screen ? AMB_LESS_EQUAL : AMB_LESS;
     pass->draw[pass->draw_count++] = record;
     return AMB_OK;
-}
-
-static void free_chunk(raster_chunk *chunk)
-{
-    free(chunk->x);
-    free(chunk->y);
-    free(chunk->vertex);
-    free(chunk->triangle);
-    free(chunk->tile_start);
-    free(chunk->entry);
-    free(chunk->large);
-}
-
-/* Chunks with their arrays, between two passes of a context. */
-typedef struct spare_chunks {
-    raster_chunk *chunk;
-    size_t count;
-} spare_chunks;
-
-static void release_chunks(void *block)
-{
-    spare_chunks *spare = block;
-    for (size_t i = 0; i < spare->count; i++)
-        free_chunk(&spare->chunk[i]);
-    free(spare->chunk);
-    free(spare);
-}
-
-static void take_chunks(amb_pass *pass)
-{
-    spare_chunks *spare = amb_spare_take(pass->context);
-    if (!spare)
-        return;
-    pass->chunk = spare->chunk;
-    pass->chunk_capacity = spare->count;
-    free(spare);
-}
-
-static void keep_chunks(amb_pass *pass)
-{
-    spare_chunks here = {pass->chunk, pass->chunk_capacity}, *spare = malloc(sizeof *spare);
-    if (!pass->chunk) {
-        free(spare);
-    } else if (spare) {
-        *spare = here;
-        amb_spare_keep(pass->context, spare, release_chunks);
-    } else { /* no memory to remember it: let it go */
-        for (size_t i = 0; i < here.count; i++)
-            free_chunk(&here.chunk[i]);
-        free(here.chunk);
-    }
 }
 
 static void free_scratch(raster_scratch *scratch)
