@@ -329,6 +329,63 @@ static void the_fetcher_keeps_checked_files_only(void **state)
     }
 }
 
+/* An npm tarball from a registry, without npm; and a package that is fetched only when asked for. */
+static void the_fetcher_takes_tarballs_and_options(void **state)
+{
+    (void)state;
+    if (shell("command -v curl > /dev/null 2>&1") != 0)
+        skip();
+    assert_int_equal(
+        shell("cd %s && rm -rf package got got.part && mkdir -p package/img && echo day > package/img/day.txt &&"
+              " tar -czf one.tgz package && echo night > package/img/day.txt && tar -czf two.tgz package &&"
+              " { echo 'package one 1 1000 one.tgz'; echo \"file x/day.txt $(echo day | sha256sum | cut -d ' ' -f 1)"
+              " */img/day.txt\"; echo 'credit Someone, MIT';"
+              " echo 'package two 1 1000 two.tgz optional'; echo \"file x/night.txt $(echo night | sha256sum |"
+              " cut -d ' ' -f 1) */img/day.txt\"; echo 'credit Another, CC0'; } > list",
+              folder),
+        0);
+    const char *run =
+        "%s AMBIANCE_PACK_LIST=%s/list AMBIANCE_PACK_NPM=file://%s scenes/pack/fetch.sh %s/got > %s/out 2>&1";
+    assert_int_equal(shell(run, "AMBIANCE_PACK_OPTIONAL=", folder, folder, folder, folder), 0);
+    assert_int_equal(shell("test \"$(cat %s/got/x/day.txt)\" = day && test ! -e %s/got/x/night.txt &&"
+                           " ! grep -q Another %s/got/ATTRIBUTION.txt",
+                           folder, folder, folder),
+                     0);
+    assert_int_equal(shell(run, "AMBIANCE_PACK_OPTIONAL=1", folder, folder, folder, folder), 0);
+    assert_int_equal(
+        shell("test \"$(cat %s/got/x/night.txt)\" = night && grep -q Another %s/got/ATTRIBUTION.txt", folder, folder),
+        0);
+}
+
+/* Key frames follow whatever still map there is, and say so; a file of one's own goes before. */
+static void maps_made_from_maps(void **state)
+{
+    amb_error error;
+    const amb_texture *map;
+    char text[192], still[65], expected[65];
+    (void)state;
+    copy("tests/data/fuzz_image/rgb3.png", "user/jupiter/color.png");
+    copy("tests/data/fuzz_image/rgb1.png", "user/jupiter/color2.png");
+    amb_assets *assets = open_assets();
+    assert_int_equal(find(assets, "jupiter/color1").source, AMB_ASSET_USER);
+    must(amb_assets_texture(assets, "jupiter/color1", &map, &error), &error);
+    assert_non_null(SHA256File("tests/data/fuzz_image/rgb3.png", still));
+    assert_string_equal(find(assets, "jupiter/color").sha256, still);
+    snprintf(text, sizeof text, "jupiter/color1:3 of %s", still);
+    SHA256Data((const uint8_t *)text, strlen(text), expected);
+    assert_string_equal(find(assets, "jupiter/color1").sha256, expected);
+    must(amb_assets_texture(assets, "jupiter/color2", &map, &error), &error);
+    assert_non_null(SHA256File("tests/data/fuzz_image/rgb1.png", still));
+    assert_string_equal(find(assets, "jupiter/color2").sha256, still);
+    /* Mars's height is our own as long as its colour is. */
+    assert_int_equal(find(assets, "mars/height").source, AMB_ASSET_BUILTIN);
+    amb_assets_close(&assets);
+    copy("tests/data/fuzz_image/rgb3.png", "user/mars/color.png");
+    assets = open_assets();
+    assert_int_equal(find(assets, "mars/height").source, AMB_ASSET_USER);
+    amb_assets_close(&assets);
+}
+
 static int open_all(void **state)
 {
     (void)state;
@@ -354,6 +411,8 @@ int main(void)
         cmocka_unit_test_setup(the_digest_is_what_the_header_says, start),
         cmocka_unit_test_setup(the_pack_list_and_the_table_agree, start),
         cmocka_unit_test_setup(the_fetcher_keeps_checked_files_only, start),
+        cmocka_unit_test_setup(the_fetcher_takes_tarballs_and_options, start),
+        cmocka_unit_test_setup(maps_made_from_maps, start),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }
