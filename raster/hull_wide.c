@@ -35,18 +35,19 @@ static void keep_factors(amb_pass *pass, const amb_tessellation *t, uint32_t fir
                          uint32_t valid, uint32_t live, raster_scratch *scratch)
 {
     const factors_x f = clamp_factors(t->shape, t->partitioning, out->edge, out->inside);
-    int32_t factor[6][AMB_LANES], made[2][AMB_LANES];
+    int32_t edge[4][AMB_LANES], inside[2][AMB_LANES], made[2][AMB_LANES];
     i32x points, triangles;
     size_factors(t->shape, t->partitioning, &f, &points, &triangles);
     const maskx drawn = (f.edge[0] != 0) & m_from_bits(valid);
     i_store(made[0], points);
     i_store(made[1], i_sel(drawn, t->points ? points : triangles, i_set(0)));
-    for (int i = 0; i < 6; i++)
-        i_store(factor[i], i < 4 ? f.edge[i] : f.inside[i - 4]);
+    for (int i = 0; i < 4; i++)
+        i_store(edge[i], f.edge[i]);
+    for (int i = 0; i < 2; i++)
+        i_store(inside[i], f.inside[i]);
     for (uint32_t lane = 0; lane < live; lane++) {
-        raster_factors *kept = &pass->patches.factors[first + lane];
-        for (int i = 0; i < 6; i++)
-            *(i < 4 ? &kept->edge[i] : &kept->inside[i - 4]) = factor[i][lane];
+        pass->patches.factors[first + lane] = (raster_factors){
+            {edge[0][lane], edge[1][lane], edge[2][lane], edge[3][lane]}, {inside[0][lane], inside[1][lane]}};
         pass->patches.points[first + lane] = (uint32_t)made[0][lane];
         pass->patches.primitives[first + lane] = (uint32_t)made[1][lane];
     }
