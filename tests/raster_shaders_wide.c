@@ -73,21 +73,22 @@ static void coded_depth(const amb_fs_in *in, amb_fs_out *out)
     out->depth = code(in->primitive, 9, u->hostile);
 }
 
-static void hull(const amb_hs_in *in, amb_hs_out *out)
+static f32x factor_of(const raster_test_uniforms *u, i32x patch, int side)
 {
     static const float table[8] = RASTER_TEST_FACTORS;
+    i32x pick = RASTER_TEST_FACTOR(patch, side, u->factors);
+    f32x factor = f_gather(table, pick);
+    return u->factors % 2 == 0 ? f_sel(pick == 7, f_set(2.0f), factor) : factor;
+}
+
+static void hull(const amb_hs_in *in, amb_hs_out *out)
+{
     const raster_test_uniforms *u = in->uniforms;
     f32x *zero = out->constants;
-    for (int i = 0; i < 6; i++) {
-        i32x pick = RASTER_TEST_FACTOR(in->patch, i, u->factors);
-        f32x factor = f_gather(table, pick);
-        if (u->factors % 2 == 0)
-            factor = f_sel(pick == 7, f_set(2.0f), factor);
-        if (i < 4)
-            out->edge[i] = factor;
-        else
-            out->inside[i - 4] = factor;
-    }
+    for (int i = 0; i < 4; i++)
+        out->edge[i] = factor_of(u, in->patch, i);
+    for (int i = 0; i < 2; i++)
+        out->inside[i] = factor_of(u, in->patch, 4 + i);
     *zero = f_set(0.0f);
 }
 
