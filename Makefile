@@ -196,7 +196,7 @@ deps: ## install the Debian packages that are missing
 assets: ## fetch the asset pack into build/assets (ASSETS=builtin: nothing; OPTIONAL=1: its optional packages too)
 	$(if $(filter builtin,$(ASSETS)),@echo "asset pack: not fetched (ASSETS=builtin)",@AMBIANCE_PACK_OPTIONAL=$(OPTIONAL) scenes/pack/fetch.sh $(BUILD)/assets)
 
-DEMO_SCENES ?= julia earth jupiter saturn mercury lucy
+DEMO_SCENES ?= julia earth jupiter saturn mercury lucy elevated
 DEMO_SIZE   ?= 1440x1080
 demo: deps ## packages, build, assets, and the gallery in out/ (ASSETS=builtin fetches nothing)
 	$(MAKE) all
