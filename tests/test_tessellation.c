@@ -320,7 +320,7 @@ static mesh make_mesh(int columns, int rows, amb_patch_shape shape, uint32_t see
     mesh m = {.columns = columns, .rows = rows};
     const uint32_t corners = shape == AMB_QUAD ? 4 : 3;
     m.patches = (uint32_t)(columns * rows) * (shape == AMB_QUAD ? 1 : 2);
-    m.clip = calloc((size_t)((columns + 1) * (rows + 1)), sizeof *m.clip);
+    m.clip = calloc((size_t)(columns + 1) * (size_t)(rows + 1), sizeof *m.clip);
     m.index = calloc(m.patches * corners + 4, sizeof *m.index);
     m.factor = calloc((size_t)m.patches * 6, sizeof *m.factor);
     random_state = seed;
