@@ -260,6 +260,9 @@ static void edges_are_divided_as_the_rules_say(void **state)
     for (int partitioning = AMB_INTEGER; partitioning <= AMB_FRACTIONAL_EVEN; partitioning++)
         for (int i = 1; i <= 64 * 37; i++)
             check_edge((float)i / 37.0f, (amb_partitioning)partitioning);
+    for (int i = 1; i <= 63; i++) /* just above, some rounded reciprocals lead across the middle */
+        for (int partitioning = AMB_INTEGER; partitioning <= AMB_FRACTIONAL_EVEN; partitioning++)
+            check_edge((float)i + 0.002f, (amb_partitioning)partitioning);
 }
 
 static void factors_are_clamped_or_cull(void **state)
