@@ -100,14 +100,14 @@ const asset_row asset_table[] = {
                 amb_builtin_brightness),
     PACKED_MAP("sun/color", "the surface of the sun", true, "sun/color.jpg", 1, amb_builtin_sun_colour),
     /* Landscapes. */
-    PACKED_MAP("hills/height", "heights of the hills: 0 lowest, 1 highest", false, NULL, 1, amb_builtin_hills),
-    PACKED_MAP("ground/grass", "a tile of grass", true, "ground/grass.png", 1, amb_builtin_ground_grass),
-    PACKED_MAP("ground/rock", "a tile of rock", true, "ground/rock.png", 1, amb_builtin_ground_rock),
-    PACKED_MAP("ground/sand", "a tile of sand", true, "ground/sand.png", 1, amb_builtin_ground_sand),
-    PACKED_MAP("ground/snow", "a tile of snow", true, "ground/snow.png", 1, amb_builtin_ground_snow),
-    MAP("hills/noise", "four tiling noises, 0.5 on average", false, 1, amb_builtin_hills_noise),
-    MAP("plants/trees", "four trees side by side, with alpha", true, 1, amb_builtin_trees),
-    MAP("plants/tree-normals", "their normals; alpha: openness to the sky", false, 1, amb_builtin_tree_normals),
-    MAP("plants/grass", "four tufts side by side, with alpha", true, 1, amb_builtin_grass_tufts),
+    PACKED_MAP("hills/height", "heights of the hills: 0 lowest, 1 highest", false, NULL, 2, amb_builtin_hills),
+    PACKED_MAP("ground/grass", "a tile of grass", true, "ground/grass.png", 2, amb_builtin_ground_grass),
+    PACKED_MAP("ground/rock", "a tile of rock", true, "ground/rock.png", 2, amb_builtin_ground_rock),
+    PACKED_MAP("ground/sand", "a tile of sand", true, "ground/sand.png", 2, amb_builtin_ground_sand),
+    PACKED_MAP("ground/snow", "a tile of snow", true, "ground/snow.png", 2, amb_builtin_ground_snow),
+    MAP("hills/noise", "four tiling noises, 0.5 on average", false, 2, amb_builtin_hills_noise),
+    MAP("plants/trees", "four trees side by side, with alpha", true, 2, amb_builtin_trees),
+    MAP("plants/tree-normals", "their normals; alpha: openness to the sky", false, 2, amb_builtin_tree_normals),
+    MAP("plants/grass", "four tufts side by side, with alpha", true, 2, amb_builtin_grass_tufts),
 };
 const int asset_table_count = sizeof asset_table / sizeof *asset_table;

@@ -23,6 +23,7 @@ typedef struct leaf {
     float open;
 } leaf;
 
+/* One call a statement: C leaves the order of arguments to the compiler. */
 static float chance(painter *p)
 {
     p->state = p->state * 747796405u + 2891336453u; /* LCG; hashed below */
@@ -90,8 +91,8 @@ static void conifer(painter *p, float spread, v3 dark, v3 light)
             float length = most * (0.62f + 0.42f * chance(p)), droop = 0.10f + 0.22f * (1.0f - t);
             for (int k = 2; k <= 20; k++) {
                 float along = (float)k / 20.0f;
-                v3 at = around(angle + 0.1f * (chance(p) - 0.5f), length * along,
-                               y - droop * length * along * along + 0.010f * (chance(p) - 0.5f));
+                float turn = 0.1f * (chance(p) - 0.5f), lift = 0.010f * (chance(p) - 0.5f);
+                v3 at = around(angle + turn, length * along, y - droop * length * along * along + lift);
                 float tip = along * along, bright = 0.35f + 0.65f * chance(p);
                 leaf l = {at, 0.0062f - 0.003f * tip, blend(dark, light, bright * (0.25f + 0.75f * tip)),
                           v3_normalize((v3){at.x * 1.3f, 0.16f + 0.5f * tip * spread, at.z * 1.3f}),
@@ -110,8 +111,8 @@ static void broadleaf(painter *p, float spread, v3 dark, v3 light)
     for (int ball = 0; ball < BALLS; ball++) {
         float t = ((float)ball + 0.5f) / BALLS, y = 0.31f + 0.53f * t;
         float bulge = f_sqrt(1.0f - (1.7f * t - 0.75f) * (1.7f * t - 0.75f)) * 1.05f;
-        v3 middle =
-            around(2.399963f * (float)ball + chance(p), spread * bulge * (0.30f + 0.70f * f_sqrt(chance(p))), y);
+        float turn = 2.399963f * (float)ball + chance(p), out_by = 0.30f + 0.70f * f_sqrt(chance(p));
+        v3 middle = around(turn, spread * bulge * out_by, y);
         float radius = 0.042f + 0.055f * chance(p);
         for (int k = 0; k < 16; k++) { /* its branch */
             float along = (float)k / 16.0f;
@@ -183,10 +184,10 @@ static void paint_grass(painter *p)
             blade(p, x, height, lean, 0.0085f + 0.004f * chance(p), foot[i], v3_scale(tip[i], bright));
             if (i == 3 && k % 6 == 0)
                 for (int f = 0; f < 9; f++) {
-                    leaf l = {{x + lean + 0.014f * (chance(p) - 0.5f),
-                               height * (1.0f - 0.12f * lean * lean) + 0.014f * (chance(p) - 0.5f), 0.3f},
+                    float right = 0.014f * (chance(p) - 0.5f), up = 0.014f * (chance(p) - 0.5f), pale = chance(p);
+                    leaf l = {{x + lean + right, height * (1.0f - 0.12f * lean * lean) + up, 0.3f},
                               0.011f,
-                              v3_scale(petal[(k / 6) % 3], 0.7f + 0.5f * chance(p)),
+                              v3_scale(petal[(k / 6) % 3], 0.7f + 0.5f * pale),
                               {0, 0.8f, 0.6f},
                               1.0f};
                     put(p, &l);
