@@ -75,7 +75,7 @@ const asset_row asset_table[] = {
     PACKED_MAP("mars/color", "Mars", true, "mars/color.jpg", 2, amb_builtin_mars_colour),
     DERIVED_MAP("mars/height", "its height", false, NULL, 2, amb_builtin_mars_height, "mars/color",
                 amb_builtin_brightness),
-    DERIVED_MAP("mars/relief", "its normals, coded: x east, y south, z up", false, "mars/relief.jpg", 1, NULL,
+    DERIVED_MAP("mars/relief", "its normals, coded: x east, y north, z up", false, "mars/relief.jpg", 2, NULL,
                 "mars/height", amb_builtin_mars_relief),
     PACKED_MAP("jupiter/color", "Jupiter", true, "jupiter/color.jpg", 3, amb_builtin_jupiter_colour),
     DERIVED_MAP("jupiter/color1", "Jupiter, key frame 1 of its drifting bands", true, NULL, 3, NULL, "jupiter/color",

@@ -15,6 +15,7 @@ const char *const planet_show_names[] = {"beauty", "albedo", "normals", "light",
 typedef struct map_rows {
     const amb_texture *from, *alpha;
     amb_image *height, *normals, *out;
+    float south; /* factor on normals' y, ±½ */
 } map_rows;
 
 static const amb_sampler nearest = {.filter = AMB_NEAREST, .wrap = {AMB_REPEAT, AMB_CLAMP, AMB_CLAMP}};
@@ -45,15 +46,17 @@ static void coded_normal_row(void *user, int y, int thread)
     const map_rows *job = user;
     for (int x = 0; x < job->out->width; x++) {
         for (int c = 0; c < 3; c++)
-            amb_image_row(job->out, c, y)[x] = amb_image_row(job->normals, c, y)[x] * 0.5f + 0.5f;
+            amb_image_row(job->out, c, y)[x] =
+                amb_image_row(job->normals, c, y)[x] * (c == 1 ? job->south : 0.5f) + 0.5f;
         amb_image_row(job->out, 3, y)[x] = amb_image_row(job->height, 0, y)[x];
     }
 }
 
 amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
-                                 const amb_normal_map_options *options, amb_texture **out, amb_error *error)
+                                 const amb_normal_map_options *options, bool green_up, amb_texture **out,
+                                 amb_error *error)
 {
-    map_rows job = {.from = height};
+    map_rows job = {.from = height, .south = green_up ? -0.5f : 0.5f};
     amb_texture_info info = amb_texture_describe(height);
     *out = NULL;
     amb_status status = amb_image_create(info.width, info.height, 1, &job.height, error);
@@ -138,7 +141,7 @@ static amb_status make_map(const amb_context *context, void *state, const planet
     amb_normal_map_options relief = row->relief;
     if (row->slope > 0.0f)
         relief.strength = relief_strength(from, row->slope);
-    return planet_normal_texture(context, from, &relief, made_at(state, row->offset), error);
+    return planet_normal_texture(context, from, &relief, false, made_at(state, row->offset), error);
 }
 
 /* A sky that is not ours has its own stars. */

@@ -192,9 +192,10 @@ amb_status planet_sky_draw(amb_pass *pass, const planet_sky *sky, const planet_v
 amb_status planet_frame(const void *state, const amb_scene_job *job, amb_error *error);
 
 /* A normal map (RGBA16F, coded, z out) from level 0 of a texture; alpha holds the height: the first channel, or
- * luminance times alpha. */
+ * luminance times alpha. green_up: y is coded northward, as most normal maps in files are; else southward, along v. */
 amb_status planet_normal_texture(const amb_context *context, const amb_texture *height,
-                                 const amb_normal_map_options *options, amb_texture **out, amb_error *error);
+                                 const amb_normal_map_options *options, bool green_up, amb_texture **out,
+                                 amb_error *error);
 
 /* Colours (sRGB8_A8) of one texture, the first channel of another in alpha: one look-up for both. */
 amb_status planet_colour_texture(const amb_context *context, const amb_texture *colour, const amb_texture *alpha,

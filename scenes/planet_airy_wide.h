@@ -36,6 +36,7 @@ static amb_status airy_draw(const void *opaque, const void *params, const planet
                               .colour = s->colour,
                               .height = s->height,
                               .relief = s->relief ? s->relief : s->made_relief,
+                              .green_up = s->relief != NULL,
                               .gloss = s->gloss,
                               .ground = s->ground,
                               .ground_strength = 0.5f};

@@ -95,6 +95,7 @@ typedef struct planet_surface {
     const amb_texture *relief, *height, *gloss; /* NULL: none */
     const amb_texture *ground;                  /* what shimmers through the clouds of `colour`; NULL: nothing */
     float ground_strength;
+    bool green_up;            /* the relief's y is coded northward */
     const amb_texture *rings; /* opacity by radius in alpha; NULL: no shadow of rings */
     float ring_shadow;
     /* An animated map: between the key frames `colour` and `next` everything moves along u by the velocity map. */
@@ -146,7 +147,12 @@ static void planet_surface_fragment(const amb_fs_in *in, amb_fs_out *out)
         f32x below = color_luminance(v4x_xyz(planet_map(u->ground, &p)));
         albedo = v3x_scale(albedo, 1.0f + u->ground_strength * (below - 0.3f));
     }
-    v3x normal = u->relief ? planet_bumped(&p, planet_map(u->relief, &p), k->bump) : p.normal;
+    v3x normal = p.normal;
+    if (u->relief) {
+        v4x texel = planet_map(u->relief, &p);
+        texel.y = u->green_up ? 1.0f - texel.y : texel.y;
+        normal = planet_bumped(&p, texel, k->bump);
+    }
     f32x n_dot_v = v3x_dot(p.normal, p.to_eye), n_dot_l = v3x_dot(normal, to_sun);
 
     f32x even = f_pow(diffuse_wrapped(n_dot_l, k->wrap), f_set(k->contrast));

@@ -42,5 +42,5 @@ amb_status amb_builtin_mars_relief(const amb_context *context, const amb_texture
 {
     const amb_normal_map_options relief = {
         .strength = 26.0f, .octaves = 3, .gain = 1.0f, .wrap_u = true, .longitude_latitude = true};
-    return planet_normal_texture(context, height, &relief, out, error);
+    return planet_normal_texture(context, height, &relief, true, out, error);
 }
