@@ -65,7 +65,7 @@ static void tree_geometry(const amb_gs_in *in, amb_gs_out *out)
     const hill_pass *pass = in->uniforms;
     const plant_root r = *(const plant_root *)in->varyings[0];
     f32x width = r.size * 0.5f;
-    maskx live = in->live & plant_seen(pass, &r, width) & ((r.foot.y > 0.0f) | (r.foot.y > 1.0e9f));
+    maskx live = in->live & plant_seen(pass, &r, width) & (r.foot.y > 0.0f);
     if (!m_any(live))
         return;
     v2x right = facing(pass, r.foot, f_set(0.0f));
