@@ -76,7 +76,7 @@ void amb_image_close(amb_image **image)
 amb_status amb_image_copy(const amb_image *source, amb_image **out, amb_error *error)
 {
     amb_status status = amb_image_create(source->width, source->height, source->channels, out, error);
-    if (status == AMB_OK)
+    if (status == AMB_OK && *out)
         memcpy((*out)->data, source->data, image_floats(source) * sizeof(float));
     return status;
 }

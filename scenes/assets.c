@@ -273,7 +273,7 @@ static amb_status identify(amb_assets *assets, asset *item, amb_error *error)
     amb_status status = item->of ? identify(assets, item->of, error) : AMB_OK;
     if (status != AMB_OK)
         return status;
-    if (item->row->kind == ASSET_IRRADIANCE) {
+    if (item->of && item->row->kind == ASSET_IRRADIANCE) {
         memcpy(item->sha256, item->of->sha256, sizeof item->sha256);
         return AMB_OK;
     }
