@@ -196,6 +196,7 @@ AMB_INLINE maskx hill_box_seen(const hill_pass *pass, v3x low, v3x high)
 #define hill_lights_make WIDE(hill_lights_make)
 #define hill_shadows_make WIDE(hill_shadows_make)
 #define hill_pass_make WIDE(hill_pass_make)
+#define hill_pass_finish WIDE(hill_pass_finish)
 amb_draw hill_terrain_draw(const hill_pass *pass); /* what hill_draw_terrain records; uniforms are *pass itself */
 amb_status hill_draw_terrain(const hill_pass *pass, amb_pass *out, amb_error *error);
 amb_status hill_draw_water(const hill_pass *pass, amb_pass *out, amb_error *error);
@@ -207,6 +208,14 @@ amb_status hill_draw_fire(const hill_pass *pass, amb_pass *out, amb_error *error
 /* The sky over every direction: u the azimuth from -z by +x, v = (1 - y)/1.0625 down to a little below the horizon. */
 amb_status hill_draw_panorama(const hill_pass *pass, amb_pass *out, amb_error *error);
 
+/* x folded to [0, period); far out, where a double no longer tells the turns apart, 0. */
+AMB_INLINE float hill_folded(double x, double period)
+{
+    double turns = x / period, whole = turns > -9.0e15 && turns < 9.0e15 ? (double)(int64_t)turns : turns;
+    double rest = turns - whole;
+    return (float)((rest < 0.0 ? rest + 1.0 : rest) * period);
+}
+
 /* The textures that a frame makes for itself, in the order they must be closed in. */
 typedef struct hill_textures {
     amb_texture *made[16];
@@ -215,9 +224,10 @@ typedef struct hill_textures {
 
 /* Fills the frame's light[], light_on[], waves and sky from its parameters and time. */
 void hill_lights_make(hill_frame *frame);
-/* Draws every shadow map that is wanted, for a picture of `height` pixels, and fills shadow[]. */
-amb_status hill_shadows_make(const amb_context *context, int height, hill_frame *frame, hill_textures *textures,
-                             amb_error *error);
+/* Draws every shadow map that is wanted for the job's picture and fills shadow[]. */
+amb_status hill_shadows_make(const amb_scene_job *job, hill_frame *frame, hill_textures *textures, amb_error *error);
+/* Finishes a pass and adds what it cost to the job's statistics. */
+amb_status hill_pass_finish(const amb_scene_job *job, amb_pass **pass, amb_error *error);
 
 /* A pass of `height` pixels that looks through a matrix; all outputs off. */
 hill_pass hill_pass_make(const hill_frame *frame, m4 world_to_clip, v3 eye, int height);

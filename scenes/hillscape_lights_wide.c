@@ -15,18 +15,10 @@ static v3 above_ground(const hill_frame *f, v3 place)
     return (v3){place.x, place.y + amb_s_max(ground_under(f, place), 0.0f), place.z}; /* or the sea */
 }
 
-/* x folded to [0, period). */
-static float folded(double x, double period)
-{
-    double turns = x / period, whole = turns > -9.0e15 && turns < 9.0e15 ? (double)(int64_t)turns : turns;
-    double rest = turns - whole;
-    return (float)((rest < 0.0 ? rest + 1.0 : rest) * period);
-}
-
 static v3 sun_direction(const hill_params *p, double time)
 {
     double turn = p->day > 0.0f ? time / (double)p->day * 360.0 : 0.0;
-    float azimuth = folded((double)p->sun_azimuth + turn, 360.0) * degree, sine, cosine, high, level;
+    float azimuth = hill_folded((double)p->sun_azimuth + turn, 360.0) * degree, sine, cosine, high, level;
     f32x s, c;
     f_sincos(f_set(azimuth), &s, &c);
     sine = f_lane(s, 0);
@@ -98,8 +90,8 @@ void hill_lights_make(hill_frame *f)
                            .noise = p->waves == WAVES_OF_NOISE,
                            .count = p->wave_count};
     waves_at_time(&f->waves, f->time);
-    float s = f_lane(f_sin(f_set(folded(f->time * (double)p->sphere_speed, 360.0) * degree)), 0);
-    float c = f_lane(f_cos(f_set(folded(f->time * (double)p->sphere_speed, 360.0) * degree)), 0);
+    float s = f_lane(f_sin(f_set(hill_folded(f->time * (double)p->sphere_speed, 360.0) * degree)), 0);
+    float c = f_lane(f_cos(f_set(hill_folded(f->time * (double)p->sphere_speed, 360.0) * degree)), 0);
     f->sphere_at = (v3){245.0f + 55.0f * s, 12.0f + 0.6f * p->sphere_radius, 130.0f - 55.0f * c};
 }
 
@@ -109,7 +101,7 @@ void hill_lights_make(hill_frame *f)
 static v3 up_across(v3 axis) { return axis.y > 0.95f || axis.y < -0.95f ? (v3){1, 0, 0} : (v3){0, 1, 0}; }
 
 typedef struct shadow_maker {
-    const amb_context *context;
+    const amb_scene_job *job;
     hill_frame *frame;
     hill_textures *textures;
     amb_error *error;
@@ -125,7 +117,7 @@ static amb_status draw_depth(const shadow_maker *m, m4 world_to_clip, v3 eye, fl
     view.depth_only = true;
     view.depth_clamp = clamp;
     view.tess_limit = tess_limit;
-    amb_status status = amb_pass_begin(m->context, &target, &pass, m->error);
+    amb_status status = amb_pass_begin(m->job->context, &target, &pass, m->error);
     if (status == AMB_OK)
         status = hill_draw_terrain(&view, pass, m->error);
     if (status == AMB_OK)
@@ -133,7 +125,7 @@ static amb_status draw_depth(const shadow_maker *m, m4 world_to_clip, v3 eye, fl
     if (status == AMB_OK)
         status = hill_draw_trees(&view, pass, m->error);
     if (status == AMB_OK)
-        status = amb_pass_finish(&pass, NULL, m->error);
+        status = hill_pass_finish(m->job, &pass, m->error);
     amb_pass_close(&pass);
     return status;
 }
@@ -244,15 +236,14 @@ static amb_status make_cube(const shadow_maker *m, int size)
     return status;
 }
 
-amb_status hill_shadows_make(const amb_context *context, int height, hill_frame *f, hill_textures *textures,
-                             amb_error *error)
+amb_status hill_shadows_make(const amb_scene_job *job, hill_frame *f, hill_textures *textures, amb_error *error)
 {
     static const float sun_ends[3] = {60.0f, 240.0f, 1500.0f}, fill_ends[1] = {300.0f};
     const hill_params *p = &f->p;
-    shadow_maker m = {context, f, textures, error};
+    shadow_maker m = {job, f, textures, error};
     amb_status status = AMB_OK;
     int size = 64, half;
-    while (size < 2 * height) /* small pictures need no large maps */
+    while (size < 2 * job->height) /* small pictures need no large maps */
         size *= 2;
     size = size < p->shadow_size ? size : p->shadow_size;
     half = size / 2;

@@ -21,10 +21,9 @@ static f32x cloud_density(v2x p, float cover, int octaves)
 static cloud cloud_at(const hill_frame *f, v3x direction)
 {
     const float height = 1100.0f, scale = 1.0f / 900.0f;
-    double wind = f->time * 6.0;
-    wind -= (double)(int64_t)(wind * 1.0e-6) * 1.0e6;
+    float wind = hill_folded(f->time * 6.0, 1.0e6);
     f32x t = height / f_max(direction.y + 0.035f, f_set(0.03f));
-    v2x p = {(direction.x * t + (float)wind) * scale, direction.z * t * scale};
+    v2x p = {(direction.x * t + wind) * scale, direction.z * t * scale};
     v3 sun = f->sky.to_sun;
     float reach = 0.16f / amb_s_max(sun.y + 0.25f, 0.25f);
     f32x here = cloud_density(p, f->p.clouds, 6);

@@ -1,5 +1,6 @@
 /* Scene hillscape: tessellated hills and water under a daylight sky, four lights with shadow maps, a moving sphere,
  * plants and a fire from the geometry stage (hillscape coursework). */
+#include "scenes/canvas.h"
 #include "scenes/hillscape_shade.h"
 
 #include <ambiance/post.h>
@@ -10,18 +11,11 @@
 /* ---- camera -------------------------------------------------------------------------------------------------------
  */
 
-static float loop_time(double time, double period)
-{
-    double loops = time / period, whole = loops > -9.0e15 && loops < 9.0e15 ? (double)(int64_t)loops : loops;
-    double rest = loops - whole;
-    return (float)((rest < 0.0 ? rest + 1.0 : rest) * period);
-}
-
 /* Never in the ground or the sea, whatever the height map. */
 static amb_camera camera_at(const hill_frame *f, const amb_scene_job *job)
 {
     float fov = 50.0f * (AMB_PI / 180.0f), near = 0.4f, far = 60000.0f;
-    amb_camera c = amb_camera_at(hill_flight, HILL_FLIGHT_KEYS, loop_time(job->time, (double)HILL_SECONDS), fov, near,
+    amb_camera c = amb_camera_at(hill_flight, HILL_FLIGHT_KEYS, hill_folded(job->time, (double)HILL_SECONDS), fov, near,
                                  far, job->width, job->height);
     float ground = f_lane(hill_ground(f, (v2x){f_set(c.position.x), f_set(c.position.z)}, f_set(2.0f)), 0);
     float least = amb_s_max(ground, 0.0f) + 2.2f;
@@ -53,6 +47,14 @@ hill_pass hill_pass_make(const hill_frame *frame, m4 world_to_clip, v3 eye, int 
     return p;
 }
 
+amb_status hill_pass_finish(const amb_scene_job *job, amb_pass **pass, amb_error *error)
+{
+    amb_pass_stats stats = {0};
+    amb_status status = amb_pass_finish(pass, &stats, error);
+    canvas_add_stats(job, &stats);
+    return status;
+}
+
 /* Opaque things near to far as far as is known, the sky where nothing is, then what blends. */
 static amb_status draw_scene(const hill_pass *pass, amb_pass *out, amb_error *error)
 {
@@ -73,7 +75,7 @@ static amb_status draw_scene(const hill_pass *pass, amb_pass *out, amb_error *er
 }
 
 /* A picture that later passes look up: one of the frame's textures, drawn by `draw`, with mips. */
-static amb_status draw_texture(const amb_context *context, hill_textures *textures, const hill_pass *view, int width,
+static amb_status draw_texture(const amb_scene_job *job, hill_textures *textures, const hill_pass *view, int width,
                                amb_status (*draw)(const hill_pass *, amb_pass *, amb_error *), bool with_depth,
                                const amb_texture **out, amb_error *error)
 {
@@ -89,11 +91,11 @@ static amb_status draw_texture(const amb_context *context, hill_textures *textur
         status = amb_image_create(width, view->height, 1, &depth, error);
     amb_target target = {.color_texture = {{.texture = texture}}, .depth = depth, .clear_depth = 1.0f};
     if (status == AMB_OK)
-        status = amb_pass_begin(context, &target, &pass, error);
+        status = amb_pass_begin(job->context, &target, &pass, error);
     if (status == AMB_OK)
         status = draw(view, pass, error);
     if (status == AMB_OK)
-        status = amb_pass_finish(&pass, NULL, error);
+        status = hill_pass_finish(job, &pass, error);
     if (status == AMB_OK)
         status = amb_texture_make_mips(texture, error);
     if (status == AMB_OK)
@@ -107,7 +109,7 @@ static amb_status make_panorama(const amb_scene_job *job, hill_frame *f, hill_te
 {
     int height = job->height / 4 < HILL_PANORAMA_HEIGHT ? job->height / 4 + 8 : HILL_PANORAMA_HEIGHT;
     hill_pass view = hill_pass_make(f, f->camera.world_to_clip, f->camera.position, height);
-    return draw_texture(job->context, textures, &view, 4 * height, hill_draw_panorama, false, &f->panorama, error);
+    return draw_texture(job, textures, &view, 4 * height, hill_draw_panorama, false, &f->panorama, error);
 }
 
 /* The scene as the water mirrors it, at half size. */
@@ -119,7 +121,7 @@ static amb_status make_mirror(const amb_scene_job *job, hill_frame *f, hill_text
     view.from.y = -view.from.y;
     view.tess_limit = 8.0f;
     view.pixels = 2.0f;
-    return draw_texture(job->context, textures, &view, (job->width + 1) / 2, draw_scene, true, &f->mirror, error);
+    return draw_texture(job, textures, &view, (job->width + 1) / 2, draw_scene, true, &f->mirror, error);
 }
 
 static amb_status draw_color(const amb_scene_job *job, const hill_frame *f, amb_error *error)
@@ -137,7 +139,7 @@ static amb_status draw_color(const amb_scene_job *job, const hill_frame *f, amb_
     if (status == AMB_OK)
         status = draw_scene(&view, pass, error);
     if (status == AMB_OK)
-        status = amb_pass_finish(&pass, NULL, error);
+        status = hill_pass_finish(job, &pass, error);
     amb_pass_close(&pass);
     amb_image_close(&depth);
     return status;
@@ -168,7 +170,7 @@ static amb_status draw_outputs(const amb_scene_job *job, const hill_frame *f, am
     if (status == AMB_OK)
         status = draw_scene(&view, pass, error);
     if (status == AMB_OK)
-        status = amb_pass_finish(&pass, NULL, error);
+        status = hill_pass_finish(job, &pass, error);
     amb_pass_close(&pass);
     amb_image_close(&own);
     return status;
@@ -194,7 +196,7 @@ static amb_status draw_passes(const amb_scene_job *job, hill_frame *f, hill_text
 {
     amb_status status = make_panorama(job, f, textures, error);
     if (status == AMB_OK)
-        status = hill_shadows_make(job->context, job->height, f, textures, error);
+        status = hill_shadows_make(job, f, textures, error);
     if (status == AMB_OK && f->p.mirror && f->p.water)
         status = make_mirror(job, f, textures, error);
     if (status == AMB_OK)
@@ -211,7 +213,7 @@ static amb_status hill_frame_draw(const void *state, const amb_scene_job *job, a
     uint32_t *patch = malloc(4 * HILL_PATCHES * HILL_PATCHES * sizeof *patch);
     if (!patch)
         return amb_fail(error, AMB_ERROR_MEMORY, "out of memory for a frame of scene hillscape");
-    f.seconds = loop_time(job->time, 4096.0);
+    f.seconds = hill_folded(job->time, 4096.0);
     f.camera = camera_at(&f, job);
     f.pixel = 2.0f * f_lane(f_tan(f_set(0.5f * f.camera.vertical_fov)), 0) / (float)job->height;
     hill_sort_patches(state, f.camera.position, patch);
