@@ -36,7 +36,7 @@ static void make_sun(hill_frame *f)
     const hill_params *p = &f->p;
     v3 to_sun = sun_direction(p, f->time);
     f->sky = amb_sky_make(to_sun, p->turbidity);
-    f->gain = 0.17f * p->exposure;
+    f->gain = 0.064f * p->exposure;
     float risen = f_lane(f_smoothstep(f_set(-0.02f), f_set(0.015f), f_set(to_sun.y)), 0);
     f->sun_seen = p->sun ? risen * 0.02f : 0.0f;
     f->light[LIGHT_SUN] = (amb_light){.kind = AMB_LIGHT_DIRECTIONAL,

@@ -4,16 +4,24 @@
 #include <stdlib.h>
 
 static const amb_material materials[GROUND_COUNT] = {
-    [GROUND_SAND] =
-        {.asset = "ground/sand", .size = 9.0f, .bump = 0.35f, .roughness = 0.55f, .f0 = 0.03f, .tint = {1, 1, 1}},
+    [GROUND_SAND] = {.asset = "ground/sand",
+                     .size = 9.0f,
+                     .bump = 0.35f,
+                     .roughness = 0.55f,
+                     .f0 = 0.03f,
+                     .tint = {0.80f, 0.76f, 0.70f}},
     [GROUND_GRASS] = {.asset = "ground/grass",
                       .size = 4.5f,
                       .bump = 0.8f,
                       .roughness = 0.6f,
                       .f0 = 0.03f,
                       .tint = {0.82f, 0.82f, 0.85f}},
-    [GROUND_ROCK] =
-        {.asset = "ground/rock", .size = 13.0f, .bump = 1.3f, .roughness = 0.45f, .f0 = 0.04f, .tint = {1, 1, 1}},
+    [GROUND_ROCK] = {.asset = "ground/rock",
+                     .size = 13.0f,
+                     .bump = 1.3f,
+                     .roughness = 0.45f,
+                     .f0 = 0.04f,
+                     .tint = {0.88f, 0.80f, 0.70f}},
     [GROUND_SNOW] =
         {.asset = "ground/snow", .size = 19.0f, .bump = 0.35f, .roughness = 0.35f, .f0 = 0.03f, .tint = {1, 1, 1}},
 };
@@ -189,7 +197,7 @@ static void grow(hill_state *s, const amb_image *height)
             v2x at = {u * 9.0f, v * 9.0f};
             float woods = fbm2(noise_gradient2, at, (amb_lattice){.seed = 91}, (amb_fbm){5, 2.0f, 0.55f}).value;
             float above = (here - HILL_SEA) * 300.0f;
-            float wanted = 0.26f + 2.9f * woods - 0.004f * (above - 25.0f) - 0.30f * steep;
+            float wanted = 0.55f + 4.5f * woods - 0.004f * (above - 25.0f) - 0.30f * steep;
             if (above < 2.6f + 7.0f * amb_unit(amb_hash(h.z)) || above > 110.0f || steep > 0.85f ||
                 amb_unit(h.z) > wanted)
                 continue;

@@ -127,7 +127,7 @@ typedef struct hill_air {
 AMB_INLINE hill_air hill_air_along(const hill_pass *pass, v3x direction, f32x distance)
 {
     const hill_frame *f = pass->frame;
-    const float density = 0.00034f, falloff = 1.0f / 140.0f;
+    const float density = 0.00017f, falloff = 1.0f / 140.0f;
     f32x height = f_set(amb_s_max(pass->from.y, 0.0f)); /* a mirrored ray counts from the water on */
     f32x depth = fog_depth(height, direction.y, distance, density * f->p.haze, falloff);
     f32x left = f_exp(-depth);
@@ -141,6 +141,7 @@ AMB_INLINE hill_air hill_air_along(const hill_pass *pass, v3x direction, f32x di
     level = v3x_lerp(level, (v3x){grey, grey, grey}, f_set(0.4f));
     v3x colour =
         v3x_add(v3x_add(v3x_splat(f->haze_rgb), level), v3x_scale(v3x_splat(f->light[LIGHT_SUN].rgb), glow * 0.15f));
+    colour = v3x_mul(colour, v3x_splat((v3){0.78f, 0.93f, 1.14f})); /* small particles scatter blue most */
     return (hill_air){left, v3x_scale(colour, 1.0f - left)};
 }
 

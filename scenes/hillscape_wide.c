@@ -235,7 +235,7 @@ const amb_scene WIDE(amb_scene_hillscape) = {
     .params = {hill_param_rows, HILL_PARAM_COUNT, sizeof(hill_params)},
     .aovs = hill_aovs,
     .aov_count = HILL_AOVS,
-    .post = "adjust:saturation=1.12,contrast=1.06;display:curve=filmic",
+    .post = "adjust:saturation=1.18,contrast=1.12;display:curve=aces",
     .load = hill_load,
     .frame = hill_frame_draw,
     .unload = hill_unload,
