@@ -196,15 +196,15 @@ deps: ## install the Debian packages that are missing
 assets: ## fetch the asset pack into build/assets (ASSETS=builtin: nothing; OPTIONAL=1: its optional packages too)
 	$(if $(filter builtin,$(ASSETS)),@echo "asset pack: not fetched (ASSETS=builtin)",@AMBIANCE_PACK_OPTIONAL=$(OPTIONAL) scenes/pack/fetch.sh $(BUILD)/assets)
 
-DEMO_SCENES ?= julia earth jupiter saturn mercury lucy elevated
+DEMO_SCENES ?= julia elevated hillscape earth jupiter saturn mercury lucy
 DEMO_SIZE   ?= 1440x1080
 demo: deps ## packages, build, assets, and the gallery in out/ (ASSETS=builtin fetches nothing)
 	$(MAKE) all
 	$(if $(filter builtin,$(ASSETS)),,$(MAKE) assets)
 	@mkdir -p out
 	@for s in $(DEMO_SCENES); do \
-	    $(BUILD)/ambiance render $$s --size $(DEMO_SIZE) $(if $(filter builtin,$(ASSETS)),--assets builtin) -o out/$$s.png && \
-	    $(BUILD)/ambiance render $$s --size $(DEMO_SIZE) $(if $(filter builtin,$(ASSETS)),--assets builtin) -o out/$$s.exr || exit $$?; \
+	    $(BUILD)/ambiance render $$s --size $(DEMO_SIZE) $(if $(filter builtin,$(ASSETS)),--assets builtin) \
+	        -o out/$$s.png -o out/$$s.exr || exit $$?; \
 	done
 	@echo; echo "Look at:"; for s in $(DEMO_SCENES); do echo "  out/$$s.png   (HDR: out/$$s.exr)"; done
 
