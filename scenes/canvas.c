@@ -81,6 +81,11 @@ void canvas_add_stats(const amb_scene_job *job, const amb_pass_stats *stats)
     if (!sum)
         return;
     sum->vertices += stats->vertices;
+    sum->patches += stats->patches;
+    sum->patches_culled += stats->patches_culled;
+    sum->domain_points += stats->domain_points;
+    sum->geometry_in += stats->geometry_in;
+    sum->geometry_vertices += stats->geometry_vertices;
     sum->triangles_in += stats->triangles_in;
     sum->triangles_clipped += stats->triangles_clipped;
     sum->triangles_culled += stats->triangles_culled;

@@ -112,7 +112,8 @@ static amb_status draw_depth(const shadow_maker *m, m4 world_to_clip, v3 eye, fl
                              amb_texture *map, int slice)
 {
     amb_pass *pass = NULL;
-    amb_target target = {.depth_texture = {.texture = map, .slice = slice}, .clear_depth = 1.0f};
+    amb_target target = {
+        .depth_texture = {.texture = map, .slice = slice}, .clear_depth = 1.0f, .time_stages = m->job->stats != NULL};
     hill_pass view = hill_pass_make(m->frame, world_to_clip, eye, amb_texture_describe(map).height);
     view.depth_only = true;
     view.depth_clamp = clamp;

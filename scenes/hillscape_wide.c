@@ -89,7 +89,10 @@ static amb_status draw_texture(const amb_scene_job *job, hill_textures *textures
     textures->made[textures->count++] = texture;
     if (with_depth)
         status = amb_image_create(width, view->height, 1, &depth, error);
-    amb_target target = {.color_texture = {{.texture = texture}}, .depth = depth, .clear_depth = 1.0f};
+    amb_target target = {.color_texture = {{.texture = texture}},
+                         .depth = depth,
+                         .clear_depth = 1.0f,
+                         .time_stages = job->stats != NULL};
     if (status == AMB_OK)
         status = amb_pass_begin(job->context, &target, &pass, error);
     if (status == AMB_OK)
@@ -132,7 +135,8 @@ static amb_status draw_color(const amb_scene_job *job, const hill_frame *f, amb_
     amb_target target = {.color = {amb_frame_layer(job->frame, "color")},
                          .depth = depth,
                          .clear_depth = 1.0f,
-                         .samples = 1 << f->p.samples};
+                         .samples = 1 << f->p.samples,
+                         .time_stages = job->stats != NULL};
     if (status == AMB_OK)
         status = amb_pass_begin(job->context, &target, &pass, error);
     hill_pass view = hill_pass_make(f, f->camera.world_to_clip, f->camera.position, job->height);
@@ -151,7 +155,7 @@ static amb_status draw_outputs(const amb_scene_job *job, const hill_frame *f, am
     amb_pass *pass = NULL;
     amb_image *depth = amb_frame_layer(job->frame, "depth"), *own = NULL;
     hill_pass view = hill_pass_make(f, f->camera.world_to_clip, f->camera.position, job->height);
-    amb_target target = {.clear_depth = 1.0f};
+    amb_target target = {.clear_depth = 1.0f, .time_stages = job->stats != NULL};
     int count = 0;
     for (int i = HILL_DEPTH + 1; i < HILL_AOVS; i++) {
         amb_image *image = amb_frame_layer(job->frame, hill_aovs[i].name);
