@@ -63,7 +63,7 @@ static void fire_fragment(const amb_fs_in *in, amb_fs_out *out)
     f32x born = f_smoothstep(f_set(0.0f), f_set(0.12f), v->age), gone = 1.0f - v->age;
     v3 glow = v3_scale(f->light[LIGHT_POINT].rgb, f->light_on[LIGHT_POINT] ? 1.0f : 0.0f);
     f32x flame = f_saturate(inside * 1.6f + (noise - 0.62f) * 1.6f) * inside * gone * born;
-    v3x hot = {f_set(glow.x * 0.16f), glow.y * (0.18f - 0.10f * v->age), glow.z * (0.16f - 0.13f * v->age)};
+    v3x hot = {f_set(glow.x * 0.13f), glow.y * (0.11f - 0.07f * v->age), glow.z * (0.09f - 0.08f * v->age)};
     v3x spark = v3x_scale(v3x_splat(glow), inside * inside * gone * 0.7f);
     f32x thick = inside * inside * f_saturate(noise * 1.5f - 0.2f) * born * gone * gone * 0.20f;
     v3x lit = v3x_add(v3x_scale(v3x_splat(f->sky_light[0]), f_set(0.5f)),

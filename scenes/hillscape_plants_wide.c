@@ -158,7 +158,7 @@ amb_status hill_draw_trees(const hill_pass *pass, amb_pass *out, amb_error *erro
 /* ---- grass --------------------------------------------------------------------------------------------------------
  */
 
-enum { GRASS_SIDE = 288 };
+enum { GRASS_SIDE = 400 };
 #define GRASS_SPACING 0.27f
 #define GRASS_REACH (0.5f * GRASS_SPACING * GRASS_SIDE)
 

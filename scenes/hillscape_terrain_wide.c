@@ -162,6 +162,16 @@ static void terrain_form(const hill_frame *f, hill_surface *s)
     s->open = 1.0f / (1.0f + below) * (0.6f + 0.4f * s->smooth.y);
 }
 
+/* Rock from dark and bluish to light and brown, by place; on steep faces the level noise runs down them as water does.
+ */
+static v3x rock_tint(v4x fine, v4x broad, f32x rock)
+{
+    f32x tone = (fine.z - 0.5f) * 1.5f + (broad.x - 0.5f) * 1.1f, one = f_set(1.0f);
+    f32x warm = f_saturate((broad.w - 0.5f) * 2.2f + (fine.y - 0.5f) * 0.8f + 0.5f);
+    v3x hue = v3x_lerp(v3x_splat((v3){0.84f, 0.90f, 1.0f}), v3x_splat((v3){1.14f, 1.0f, 0.82f}), warm);
+    return v3x_lerp((v3x){one, one, one}, v3x_scale(hue, f_clamp(0.92f + tone, f_set(0.35f), f_set(1.6f))), rock);
+}
+
 /* Under water light loses its red on the way down and back up; wet ground by the water is darker and glossier. */
 static void wet(hill_surface *s, f32x height)
 {
@@ -185,6 +195,7 @@ static void terrain_fragment(const amb_fs_in *in, amb_fs_out *out)
     f32x far = f_smoothstep(f_set(10.0f), f_set(180.0f), s.distance);
     material_point m = ground_at(f, &s, weight, far);
     s.albedo = v3x_mul(m.albedo, hill_meadow_tint_of(fine, broad, weight[GROUND_GRASS]));
+    s.albedo = v3x_mul(s.albedo, rock_tint(fine, broad, weight[GROUND_ROCK]));
     s.normal = v3x_normalize(v3x_add(s.smooth, m.bent));
     s.open *= m.open;
     s.roughness = m.roughness;
