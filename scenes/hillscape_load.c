@@ -159,7 +159,7 @@ void hill_sort_patches(const hill_state *s, v3 eye, uint32_t *near_to_far)
 /* ---- plants -------------------------------------------------------------------------------------------------------
  */
 
-enum { PLANT_CELLS = 380 };
+enum { PLANT_CELLS = 470 };
 
 /* Does the flight pass close by? Billboards are no company for an eye. */
 enum { FLIGHT_STEPS = 240 };
