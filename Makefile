@@ -145,7 +145,7 @@ sanitize: ## both of them in one build
 	$(MAKE) CC=clang BUILD=$(BUILD)/sanitize SANITIZE="-fsanitize=address$(comma)undefined $(SAN)" OPT=-O1 check
 
 # Archer tells ThreadSanitizer about OpenMP's own synchronisation.
-TSAN_TESTS ?= test_core test_raster test_raster_state test_tessellation test_geometry test_raster_targets test_raster_random test_rays test_post
+TSAN_TESTS ?= test_core test_raster test_raster_state test_tessellation test_patches test_geometry test_raster_targets test_raster_random test_rays test_post
 ARCHER     := $(firstword $(wildcard /usr/lib/llvm-*/lib/libarcher.so))
 tsan: ## the tests that run on several threads under ThreadSanitizer
 	OMP_TOOL_LIBRARIES=$(ARCHER) TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1 suppressions=$(CURDIR)/tests/tsan.supp" \

@@ -2,7 +2,7 @@
  * same order. */
 #include "raster/internal.h"
 #include "tests/raster_shaders.h"
-#include "tests/stage_shaders.h"
+#include "tests/stage_draws.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,46 +17,7 @@
 #define INPUTS 400
 #define MOST (INPUTS * AMB_MAX_GEOMETRY_VERTICES)
 
-static uint64_t random_state = 1;
-
-static float uniform(float lo, float hi)
-{
-    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
-    uint64_t x = random_state ^ random_state >> 33;
-    return lo + (hi - lo) * (float)((x * 0xff51afd7ed558ccdu) >> 40) * 0x1p-24f;
-}
-
-static amb_context *make_context(amb_isa isa, int threads)
-{
-    amb_context *context = NULL;
-    const amb_context_options options = {.isa = isa, .threads = threads};
-    assert_int_equal(amb_context_create(&options, &context, NULL), AMB_OK);
-    return context;
-}
-
 /* ---- the two ways ----------------------------------------------------------------------------------------------- */
-
-static amb_image *run(const amb_context *context, const amb_draw *draw, int tile_size, size_t batch_bytes,
-                      amb_pass_stats *stats)
-{
-    amb_image *image = NULL;
-    amb_pass *pass = NULL;
-    amb_error error = {0};
-    assert_int_equal(amb_image_create(WIDTH, HEIGHT, 4, &image, NULL), AMB_OK);
-    amb_target target = {.color = {image}};
-    assert_int_equal(raster_pass_begin(context, &target, tile_size, batch_bytes, &pass, NULL), AMB_OK);
-    if (amb_pass_draw(pass, draw, &error) != AMB_OK)
-        fail_msg("%s", error.detail);
-    assert_int_equal(amb_pass_finish(&pass, stats, NULL), AMB_OK);
-    return image;
-}
-
-static void assert_same_pixels(const amb_image *a, const amb_image *b)
-{
-    for (int c = 0; c < a->channels; c++)
-        for (int y = 0; y < a->height; y++)
-            assert_memory_equal(amb_image_row(a, c, y), amb_image_row(b, c, y), (size_t)a->width * sizeof(float));
-}
 
 /* A draw of `count` vertices of given positions. */
 static amb_draw draw_of(const amb_context *context, const stage_test_uniforms *uniforms, amb_topology topology,
@@ -112,8 +73,8 @@ static void compare(const amb_context *context, const amb_draw *draw, const list
     direct.count = expected->count;
     direct.topology = output;
     direct.geometry = (amb_geometry){0};
-    amb_image *a = run(context, draw, 64, RASTER_BATCH_BYTES, &stats);
-    amb_image *b = run(context, &direct, 64, RASTER_BATCH_BYTES, &direct_stats);
+    amb_image *a = draw_image(context, draw, WIDTH, HEIGHT, 64, RASTER_BATCH_BYTES, &stats);
+    amb_image *b = draw_image(context, &direct, WIDTH, HEIGHT, 64, RASTER_BATCH_BYTES, &direct_stats);
     assert_same_pixels(a, b);
     assert_int_equal(stats.triangles_in, direct_stats.triangles_in);
     assert_int_equal(stats.triangles_clipped, direct_stats.triangles_clipped);
@@ -174,9 +135,9 @@ static void numbers_are_those_of_the_input(void **state)
     d.fragment = s->number;
     d.blend[0] = AMB_BLEND_OFF;
     d.instances = 2;
-    amb_image *a = run(context, &d, 64, RASTER_BATCH_BYTES, NULL);
+    amb_image *a = draw_image(context, &d, WIDTH, HEIGHT, 64, RASTER_BATCH_BYTES, NULL);
     d.geometry = (amb_geometry){.shader = s->same, .vertices = 3};
-    amb_image *b = run(context, &d, 64, RASTER_BATCH_BYTES, NULL);
+    amb_image *b = draw_image(context, &d, WIDTH, HEIGHT, 64, RASTER_BATCH_BYTES, NULL);
     assert_same_pixels(a, b);
     amb_image_close(&a);
     amb_image_close(&b);
@@ -324,7 +285,7 @@ static void pixels_depend_on_nothing_else(void **state)
         amb_pass_stats stats;
         amb_draw d = draw_of(context, &uniforms, AMB_POINTS, INPUTS);
         d.geometry = (amb_geometry){.shader = stage_test_shaders_of(isa)->amplify, .vertices = 60};
-        amb_image *image = run(context, &d, tiles[i / 3], i & 1 ? 0 : RASTER_BATCH_BYTES, &stats);
+        amb_image *image = draw_image(context, &d, WIDTH, HEIGHT, tiles[i / 3], i & 1 ? 0 : RASTER_BATCH_BYTES, &stats);
         if (!first) {
             first = image, first_stats = stats;
         } else {
