@@ -20,7 +20,7 @@ SANITIZE ?=
 VERSION := 0.1.0
 
 # One list for a fresh Debian 12: what `make demo` and `make test` install when it is missing.
-PACKAGES := clang gcc libomp-dev libclang-rt-14-dev pkg-config libembree-dev libopenexr-dev openexr libassimp-dev libstb-dev \
+PACKAGES := clang gcc libomp-dev libclang-rt-14-dev llvm pkg-config libembree-dev libopenexr-dev openexr libassimp-dev libstb-dev \
             libpng-dev libmd-dev zlib1g-dev libjansson-dev libcmocka-dev libegl-dev libgles-dev libegl-mesa0 libgl1-mesa-dri
 export PACKAGES
 
