@@ -66,3 +66,11 @@ void assert_same_pixels(const amb_image *a, const amb_image *b)
         for (int y = 0; y < a->height; y++)
             assert_memory_equal(amb_image_row(a, c, y), amb_image_row(b, c, y), (size_t)a->width * sizeof(float));
 }
+
+void refuse(amb_pass *pass, const amb_draw *draw, const char *text)
+{
+    amb_error error = {0};
+    assert_int_equal(amb_pass_draw(pass, draw, &error), AMB_ERROR_ARGUMENT);
+    if (!strstr(error.detail, text))
+        fail_msg("'%s' does not contain '%s'", error.detail, text);
+}

@@ -15,5 +15,6 @@ amb_context *make_context(amb_isa isa, int threads);
 amb_image *draw_image(const amb_context *context, const amb_draw *draw, int width, int height, int tile_size,
                       size_t batch_bytes, amb_pass_stats *stats);
 void assert_same_pixels(const amb_image *a, const amb_image *b);
+void refuse(amb_pass *pass, const amb_draw *draw, const char *text); /* ARGUMENT, in a line that holds the text */
 
 #endif

@@ -322,14 +322,6 @@ static void instances_and_bad_indices(void **state)
     amb_context_close(&context);
 }
 
-static void refuse(amb_pass *pass, const amb_draw *draw, const char *text)
-{
-    amb_error error = {0};
-    assert_int_equal(amb_pass_draw(pass, draw, &error), AMB_ERROR_ARGUMENT);
-    if (!strstr(error.detail, text))
-        fail_msg("'%s' does not contain '%s'", error.detail, text);
-}
-
 static void bad_draws_are_refused(void **state)
 {
     (void)state;
