@@ -105,6 +105,18 @@ static inline void run_shader(const raster_tile *tile, const amb_draw *draw, con
     tile->stats->fragments_shaded += (uint64_t)__builtin_popcount(m_bits(in->live));
 }
 
+/* What follows the shader, on one sample of the live lanes. base: its first plane. */
+static inline void write_fragments(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
+                                   maskx front, f32x depth, const amb_fs_out *out, maskx live, bool late, bool packed)
+{
+    if (late || draw->stencil.on)
+        live = update_depth_stencil(tile, draw, at, base, front, depth, live, packed);
+    else if (!draw->depth_write_off)
+        store_plane(at, base, depth, live, packed);
+    if (m_any(live))
+        store_colors(tile, draw, at, base, out, live, packed);
+}
+
 /* Runs the fragment shader and everything after it on the lanes of in->live. */
 static inline void shade_group(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
                                bool late, bool packed)
@@ -116,12 +128,58 @@ static inline void shade_group(const raster_tile *tile, const amb_draw *draw, co
     const uint64_t start = raster_start(timed);
     if (draw->alpha_to_coverage)
         live &= out.color[0].w >= 0.5f;
-    if (late || draw->stencil.on)
-        live = update_depth_stencil(tile, draw, at, 0, in->front, out.depth, live, packed);
-    else if (!draw->depth_write_off)
-        store_plane(at, 0, out.depth, live, packed);
-    if (m_any(live))
-        store_colors(tile, draw, at, 0, &out, live, packed);
+    write_fragments(tile, draw, at, 0, in->front, out.depth, &out, live, late, packed);
+    raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
+}
+
+/* ---- samples: a lane's have a bit each ----------------------------------------------------------------------------
+ */
+
+static inline int32_t all_samples(const raster_tile *tile) { return (1 << tile->pass->samples) - 1; }
+static inline maskx sample_lanes(i32x samples, int sample) { return (samples & i_set(1 << sample)) != 0; }
+
+/* The samples of which ⌊n·alpha + ½⌋ is above `sample`. */
+static inline maskx alpha_covers(f32x alpha, int samples, int sample)
+{
+    return f_floor(f_saturate(alpha) * (float)samples + 0.5f) > (float)sample;
+}
+
+/* Those of the samples that pass the early tests. */
+static inline i32x samples_passing(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
+                                   i32x samples, const f32x depth[RASTER_MAX_SAMPLES], bool packed)
+{
+    i32x passed = i_set(0);
+    for (int i = 0; i < tile->pass->samples; i++)
+        passed |= output_tests(tile, draw, at, i * tile->pass->planes, front, depth[i], packed) & i_set(1 << i);
+    return samples & passed;
+}
+
+/* Tests the samples and writes their depth and stencil, without a shader. */
+static inline void update_samples(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
+                                  i32x samples, const f32x depth[RASTER_MAX_SAMPLES], bool packed)
+{
+    for (int i = 0; i < tile->pass->samples; i++)
+        update_depth_stencil(tile, draw, at, i * tile->pass->planes, front, depth[i], sample_lanes(samples, i), packed);
+}
+
+/* shade_group where pixels have samples: live are those that are covered and have passed the early tests. */
+static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
+                                 i32x live, const f32x depth[RASTER_MAX_SAMPLES], bool packed)
+{
+    const int samples = tile->pass->samples;
+    const bool late = tests_late(draw);
+    amb_fs_out out;
+    run_shader(tile, draw, in, &out);
+    const bool timed = tile->pass->target.time_stages;
+    const uint64_t start = raster_start(timed);
+    for (int i = 0; i < samples; i++) {
+        maskx written = sample_lanes(live, i) & out.live;
+        if (draw->alpha_to_coverage)
+            written &= alpha_covers(out.color[0].w, samples, i);
+        if (m_any(written))
+            write_fragments(tile, draw, at, i * tile->pass->planes, in->front,
+                            draw->writes_depth ? out.depth : depth[i], &out, written, late, packed);
+    }
     raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
 }
 
@@ -159,6 +217,8 @@ typedef struct raster_quads {
     const float *varying[3][RASTER_QUADS]; /* of its three vertices */
     f32x p[3], depth;                      /* perspective weights before division */
     i32x position, primitive_front;
+    i32x samples; /* only where pixels have several: those that are live, a bit each, and the depth of each */
+    f32x sample_depth[RASTER_MAX_SAMPLES];
 } raster_quads;
 
 typedef struct raster_queue {
@@ -223,7 +283,10 @@ static __attribute__((noinline)) void shade_quads(const raster_tile *tile, const
     set_position(&in, q->position);
     f32x scale = 1.0f / ((q->p[0] + q->p[1]) + q->p[2]);
     interpolate_quads(q, draw->varying_floats, q->p[1] * scale, q->p[2] * scale, varying);
-    shade_group(tile, draw, &q->at, &in, tests_late(draw), true);
+    if (tile->pass->samples > 1)
+        shade_samples(tile, draw, &q->at, &in, q->samples, q->sample_depth, true);
+    else
+        shade_group(tile, draw, &q->at, &in, tests_late(draw), true);
 }
 
 /* Shades the waiting quads. */
@@ -270,6 +333,11 @@ static inline void queue_quads(const raster_tile *tile, raster_queue *queue, con
         to->depth = f_sel(taken, permute(from->depth, index), to->depth);
         to->position = i_sel(taken, permute_i(from->position, index), to->position);
         to->primitive_front = i_sel(taken, permute_i(from->primitive_front, index), to->primitive_front);
+        if (tile->pass->samples > 1) {
+            to->samples = i_sel(taken, permute_i(from->samples, index), to->samples);
+            for (int i = 0; i < tile->pass->samples; i++)
+                to->sample_depth[i] = f_sel(taken, permute(from->sample_depth[i], index), to->sample_depth[i]);
+        }
         for (; wanted != 0 && queue->count < RASTER_QUADS; wanted &= wanted - 1) {
             int quad = __builtin_ctz(wanted), slot = queue->count++;
             uint32_t pixels = live >> 4 * quad & 15u;
@@ -285,19 +353,20 @@ static inline void queue_quads(const raster_tile *tile, raster_queue *queue, con
     }
 }
 
-/* The live quads of a block of one triangle, into the queue. */
-static inline void queue_block(const raster_tile *tile, raster_queue *queue, const raster_shading *s, float *block,
-                               uint32_t first_quad, const f32x p[3], f32x depth, i32x position, uint32_t live)
+/* The quads of a block of one triangle; what belongs to samples is not filled in. */
+static inline void block_quads(raster_quads *q, const raster_shading *s, float *block, uint32_t first_quad,
+                               const f32x p[3], f32x depth, i32x position)
 {
-    raster_quads q = {.p = {p[0], p[1], p[2]}, .depth = depth, .position = position};
-    q.primitive_front = i_set((int32_t)s->primitive_front);
+    q->p[0] = p[0], q->p[1] = p[1], q->p[2] = p[2];
+    q->depth = depth;
+    q->position = position;
+    q->primitive_front = i_set((int32_t)s->primitive_front);
     for (uint32_t i = 0; i < RASTER_QUADS; i++) {
-        q.at.quad[i] = block + 4 * i;
-        q.index[i] = (uint16_t)(first_quad + i);
+        q->at.quad[i] = block + 4 * i;
+        q->index[i] = (uint16_t)(first_quad + i);
         for (int k = 0; k < 3; k++)
-            q.varying[k][i] = s->vertex[k]->varying;
+            q->varying[k][i] = s->vertex[k]->varying;
     }
-    queue_quads(tile, queue, &q, live);
 }
 #else
 static inline void flush_queue(const raster_tile *tile, raster_queue *queue) { (void)tile, (void)queue; }
@@ -342,67 +411,49 @@ static inline f32x depth_at(const raster_shading *s, const f32x e[3])
     return f_saturate(((s->z0 + s->dz1 * (e[1] * s->inverse_area)) + s->dz2 * (e[2] * s->inverse_area)) + s->bias);
 }
 
-/* The samples of which ⌊n·alpha + ½⌋ is above `sample`. */
-static inline maskx alpha_covers(f32x alpha, int samples, int sample)
-{
-    return f_floor(f_saturate(alpha) * (float)samples + 0.5f) > (float)sample;
-}
-
-/* What follows coverage when pixels have samples. live: of each sample, the lanes that are covered and have passed the
- * early tests. */
-static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
-                                 const maskx live[RASTER_MAX_SAMPLES], const f32x depth[RASTER_MAX_SAMPLES])
-{
-    const int samples = tile->pass->samples;
-    amb_fs_out out;
-    run_shader(tile, draw, in, &out);
-    const bool timed = tile->pass->target.time_stages;
-    const uint64_t start = raster_start(timed);
-    for (int i = 0; i < samples; i++) {
-        maskx written = live[i] & out.live;
-        if (draw->alpha_to_coverage)
-            written &= alpha_covers(out.color[0].w, samples, i);
-        if (!m_any(written))
-            continue;
-        int base = i * tile->pass->planes;
-        written = update_depth_stencil(tile, draw, at, base, in->front, draw->writes_depth ? out.depth : depth[i],
-                                       written, false);
-        if (m_any(written))
-            store_colors(tile, draw, at, base, &out, written, false);
-    }
-    raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
-}
-
 /* A block of which samples are covered. e: the edge functions at the pixels' centres. */
-static inline void fragment_samples(const raster_tile *tile, raster_shading *s, int bx, int by,
-                                    const maskx cover[RASTER_MAX_SAMPLES], const f32x depth[RASTER_MAX_SAMPLES],
-                                    const f32x e[3])
+static inline void fragment_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, int bx, int by,
+                                    i32x samples, const f32x sample_depth[RASTER_MAX_SAMPLES], const f32x e[3])
 {
     const amb_draw *draw = s->draw;
     const raster_pixels at = {{block_at(tile, bx, by)}};
-    const bool late = tests_late(draw);
-    const maskx clip = inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
-    maskx live[RASTER_MAX_SAMPLES], any = m_set(false);
-    for (int i = 0; i < tile->pass->samples; i++) {
-        int base = i * tile->pass->planes;
-        live[i] = cover[i] & clip;
-        if (!draw->fragment)
-            update_depth_stencil(tile, draw, &at, base, front, depth[i], live[i], false);
-        else if (!late)
-            live[i] &= output_tests(tile, draw, &at, base, front, depth[i], false);
-        any |= live[i];
-    }
-    if (!draw->fragment || !m_any(any))
+    const maskx front = m_set(s->primitive_front >> 31 != 0);
+    samples &= inside_clip(tile, bx, by);
+    if (!draw->fragment) {
+        update_samples(tile, draw, &at, front, samples, sample_depth, false);
         return;
-    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
+    }
+#if AMB_LANES > 4
+    const uint32_t first_quad = (uint32_t)(by * tile->blocks_x + bx) * RASTER_QUADS;
+    flush_overlap(tile, queue, first_quad, m_bits(samples != 0));
+#else
+    (void)queue;
+#endif
+    if (!tests_late(draw))
+        samples = samples_passing(tile, draw, &at, front, samples, sample_depth, false);
+    const maskx live = samples != 0;
+    const uint32_t bits = m_bits(live);
+    if (bits == 0)
+        return;
+    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]}, depth = depth_at(s, e);
+#if AMB_LANES > 4
+    if (!all_quads_live(bits)) {
+        raster_quads q;
+        block_quads(&q, s, at.quad[0], first_quad, p, depth, block_position(tile, bx, by));
+        q.samples = samples;
+        for (int i = 0; i < tile->pass->samples; i++)
+            q.sample_depth[i] = sample_depth[i];
+        queue_quads(tile, queue, &q, bits);
+        return;
+    }
+#endif
     f32x varying[AMB_MAX_VARYINGS + 1];
-    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .live = any, .front = front};
+    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = depth, .live = live, .front = front};
     in.thread = tile->thread;
-    in.depth = depth_at(s, e);
     in.primitive = i_set((int32_t)(s->primitive_front & 0x7fffffffu));
     set_position(&in, block_position(tile, bx, by));
     interpolate_block(s, p, varying);
-    shade_samples(tile, draw, &at, &in, live, depth);
+    shade_samples(tile, draw, &at, &in, samples, sample_depth, false);
 }
 
 /* A covered block of a triangle. e: the three edge functions at the lanes' pixel centres, in units of 1/256 of the
@@ -416,13 +467,10 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     if (!s->prepared)
         prepare_shading(s);
     if (tile->pass->samples > 1) { /* a line or a point: all samples of its pixels */
-        maskx samples[RASTER_MAX_SAMPLES];
         f32x depths[RASTER_MAX_SAMPLES];
-        for (int i = 0; i < tile->pass->samples; i++) {
-            samples[i] = cover;
+        for (int i = 0; i < tile->pass->samples; i++)
             depths[i] = depth_at(s, e);
-        }
-        fragment_samples(tile, s, bx, by, samples, depths, e);
+        fragment_samples(tile, s, queue, bx, by, cover & all_samples(tile), depths, e);
         return;
     }
     maskx covered = cover & inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
@@ -432,8 +480,7 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
 #else
     (void)queue;
 #endif
-    f32x depth =
-        f_saturate(((s->z0 + s->dz1 * (e[1] * s->inverse_area)) + s->dz2 * (e[2] * s->inverse_area)) + s->bias);
+    f32x depth = depth_at(s, e);
     const bool late = tests_late(draw);
     maskx live = live_lanes(tile, draw, &at, covered, depth, front, late);
     uint32_t bits = m_bits(live);
@@ -442,7 +489,9 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
 #if AMB_LANES > 4
     if (!all_quads_live(bits)) {
-        queue_block(tile, queue, s, at.quad[0], first_quad, p, depth, block_position(tile, bx, by), bits);
+        raster_quads q;
+        block_quads(&q, s, at.quad[0], first_quad, p, depth, block_position(tile, bx, by));
+        queue_quads(tile, queue, &q, bits);
         return;
     }
 #endif
@@ -462,19 +511,16 @@ static inline void fragment_screen(const raster_tile *tile, const amb_draw *draw
     const bool late = tests_late(draw);
     amb_fs_in in = {.uniforms = draw->uniforms, .depth = f_set(1.0f), .front = m_set(true), .thread = tile->thread};
     if (tile->pass->samples > 1) {
-        maskx live[RASTER_MAX_SAMPLES];
         f32x depth[RASTER_MAX_SAMPLES];
-        in.live = m_set(false);
-        for (int i = 0; i < tile->pass->samples; i++) {
+        for (int i = 0; i < tile->pass->samples; i++)
             depth[i] = in.depth;
-            live[i] = inside_clip(tile, bx, by);
-            if (!late)
-                live[i] &= output_tests(tile, draw, &at, i * tile->pass->planes, in.front, in.depth, false);
-            in.live |= live[i];
-        }
+        i32x live = inside_clip(tile, bx, by) & all_samples(tile);
+        if (!late)
+            live = samples_passing(tile, draw, &at, in.front, live, depth, false);
+        in.live = live != 0;
         set_position(&in, block_position(tile, bx, by));
         if (m_any(in.live))
-            shade_samples(tile, draw, &at, &in, live, depth);
+            shade_samples(tile, draw, &at, &in, live, depth, false);
         return;
     }
     in.live = live_lanes(tile, draw, &at, inside_clip(tile, bx, by), in.depth, in.front, late);

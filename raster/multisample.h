@@ -48,30 +48,31 @@ static inline maskx edge_over_block(const raster_edge *e, int x, int y, bool fit
     return m_from_bits(inside);
 }
 
-static void cover_samples(const raster_tile *tile, raster_shading *s, const sample_edges *edges, raster_box box, int bx,
-                          int by, bool fits)
+static void cover_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, const sample_edges *edges,
+                          raster_box box, int bx, int by, bool fits)
 {
     const int samples = tile->pass->samples;
     int x = (bx - box.x0) * AMB_BLOCK_W, y = (by - box.y0) * AMB_BLOCK_H;
-    maskx cover[RASTER_MAX_SAMPLES], any = m_set(false);
+    i32x covered = i_set(0);
     f32x weight[3], depth[RASTER_MAX_SAMPLES];
     if (!s->prepared)
         prepare_shading(s);
     for (int i = 0; i < samples; i++) {
-        cover[i] = m_set(true);
+        maskx cover = m_set(true);
         for (int k = 0; k < 3; k++)
-            cover[i] &= edge_over_block(&edges->e[i][k], x, y, fits, &weight[k]);
+            cover &= edge_over_block(&edges->e[i][k], x, y, fits, &weight[k]);
         depth[i] = depth_at(s, weight);
-        any |= cover[i];
+        covered |= cover & i_set(1 << i);
     }
-    if (!m_any(any))
+    if (!m_any(covered != 0))
         return;
     for (int k = 0; k < 3; k++)
         edge_over_block(&edges->e[samples][k], x, y, fits, &weight[k]);
-    fragment_samples(tile, s, bx, by, cover, depth, weight);
+    fragment_samples(tile, s, queue, bx, by, covered, depth, weight);
 }
 
-static void play_multisample(const raster_tile *tile, raster_shading *s, uint32_t low, uint32_t high)
+static void play_multisample(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low,
+                             uint32_t high)
 {
     const raster_chunk *chunk = s->chunk;
     const int samples = tile->pass->samples;
@@ -108,7 +109,7 @@ static void play_multisample(const raster_tile *tile, raster_shading *s, uint32_
                 outside |= middle + wide + 2 < 0;
             }
             if (!outside)
-                cover_samples(tile, s, &edges, box, bx, by, fits);
+                cover_samples(tile, s, queue, &edges, box, bx, by, fits);
         }
 }
 

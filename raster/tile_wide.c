@@ -199,7 +199,7 @@ static inline void play_one(const raster_tile *tile, raster_shading *s, raster_q
     } else if (s->chunk->draw->points) {
         play_point(tile, s, queue, g->low[n], g->high[n]);
     } else if (tile->pass->samples > 1) {
-        play_multisample(tile, s, g->low[n], g->high[n]);
+        play_multisample(tile, s, queue, g->low[n], g->high[n]);
     } else if (!(g->small >> n & 1u)) {
         play_large(tile, s, queue, g->low[n], g->high[n]);
     } else {
