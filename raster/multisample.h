@@ -3,7 +3,7 @@
 #ifndef AMBIANCE_RASTER_MULTISAMPLE_H
 #define AMBIANCE_RASTER_MULTISAMPLE_H
 
-#include "raster/coverage.h"
+#include "raster/small.h"
 
 /* D3D's standard positions, 1/16 pixel from the centre. */
 static const int8_t *sample_positions(int samples)
@@ -112,5 +112,109 @@ static void play_multisample(const raster_tile *tile, raster_shading *s, raster_
                 cover_samples(tile, s, queue, &edges, box, bx, by, fits);
         }
 }
+
+/* ---- small triangles together, as small.h plays them --------------------------------------------------------------
+ */
+
+#if AMB_LANES > 4
+
+/* Edge functions in 1/256 of a pixel's step, their constants from the tile's first pixel: those may overflow, but near
+ * the triangle nothing does. */
+typedef struct sample_group {
+    small_group m;
+    u32x c[3];       /* less 1 where a sample on the edge belongs to the other side */
+    i32x on_edge[3]; /* that 1 */
+    i32x offset[RASTER_MAX_SAMPLES][3];
+} sample_group;
+
+/* Fills all but m. reach: edge functions as small_group's, of whichever sample of a pixel lies farthest inside. */
+static inline void gather_sample_edges(const raster_tile *tile, sample_group *g, i32x reach[3])
+{
+    const int8_t *position = sample_positions(tile->pass->samples);
+    const small_group *m = &g->m;
+    for (int i = 0; i < 3; i++) {
+        i32x a = m->a[i] * (RASTER_SUBPIXEL / 16), b = m->b[i] * (RASTER_SUBPIXEL / 16);
+        i32x most = g->offset[0][i] = a * position[0] + b * position[1];
+        for (int n = 1; n < tile->pass->samples; n++) {
+            g->offset[n][i] = a * position[2 * n] + b * position[2 * n + 1];
+            most = i_max(most, g->offset[n][i]);
+        }
+        i32x fraction = f_to_i(m->bias[i] * 256.0f); /* 256 where the fill rule is in c */
+        reach[i] = m->c[i] + ((fraction + most) >> 8);
+        g->on_edge[i] = i_sel((a > 0) | ((a == 0) & (b > 0)), i_set(0), i_set(1));
+        g->c[i] = i_as_u(m->c[i]) * RASTER_SUBPIXEL + i_as_u(fraction - g->on_edge[i]);
+    }
+}
+
+/* An edge function as a weight: in the unit that coverage.h gives it, and rounded once as there. */
+static inline f32x sample_weight(i32x e) { return i_to_f(e) * (1.0f / 256.0f); }
+
+/* RASTER_QUADS of the row, from `first` on. */
+static inline void play_sample_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue,
+                                   const sample_group *g, int first)
+{
+    const small_group *m = &g->m;
+    i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2), triangle = quad & 255;
+    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16) + (i_lane_index() >> 1 & 1);
+    maskx wanted = i_lane_index() < 4 * (m->count - first);
+    if (tile->clipped)
+        wanted &= (x >= tile->clip_x0) & (x < tile->clip_x1) & (y >= tile->clip_y0) & (y < tile->clip_y1);
+    i32x e[3];
+    for (int i = 0; i < 3; i++)
+        e[i] = u_as_i(i_as_u(permute_i(u_as_i(g->c[i]), triangle)) +
+                      i_as_u(permute_i(m->a[i], triangle) * RASTER_SUBPIXEL) * i_as_u(x) +
+                      i_as_u(permute_i(m->b[i], triangle) * RASTER_SUBPIXEL) * i_as_u(y));
+    raster_quads q;
+    q.samples = i_set(0);
+    for (int n = 0; n < tile->pass->samples; n++) {
+        const i32x *offset = g->offset[n];
+        i32x inside = (e[0] + permute_i(offset[0], triangle)) | (e[1] + permute_i(offset[1], triangle)) |
+                      (e[2] + permute_i(offset[2], triangle));
+        q.samples |= (inside >= 0) & i_set(1 << n);
+    }
+    q.samples &= wanted;
+    const maskx cover = q.samples != 0;
+    if (!m_any(cover))
+        return;
+    for (int i = 0; i < 3; i++) {
+        e[i] += permute_i(g->on_edge[i], triangle);
+        q.p[i] = sample_weight(e[i]) * permute(m->inverse_w[i], triangle);
+    }
+    f32x z0 = permute(m->z0, triangle), dz1 = permute(m->dz1, triangle), dz2 = permute(m->dz2, triangle);
+    f32x inverse_area = permute(m->inverse_area, triangle), bias = permute(m->depth_bias, triangle);
+#define DEPTH_(e1, e2) \
+    f_saturate(((z0 + dz1 * (sample_weight(e1) * inverse_area)) + dz2 * (sample_weight(e2) * inverse_area)) + bias)
+    q.depth = DEPTH_(e[1], e[2]);
+    for (int n = 0; n < tile->pass->samples; n++)
+        q.sample_depth[n] =
+            DEPTH_(e[1] + permute_i(g->offset[n][1], triangle), e[2] + permute_i(g->offset[n][2], triangle));
+#undef DEPTH_
+    q.position = (x + tile->x0) | ((y + tile->y0) << 16);
+    q.primitive_front = permute_i(m->primitive_front, triangle);
+    take_varyings(m, first, &q);
+    locate_quads(tile, x, y, &q);
+    play_quads(tile, draw, queue, &q, cover);
+}
+
+static void play_small_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *edges,
+                               int first, int end)
+{
+    sample_group g;
+    i32x reach[3];
+    gather_small(tile, s, edges, &g.m, first, end);
+    gather_sample_edges(tile, &g, reach);
+    sieve_quads(&g.m, reach);
+    i_store(g.m.quad + g.m.count, i_set(first)); /* whatever follows is a quad of some triangle */
+    for (int i = 0; i < g.m.count; i += RASTER_QUADS)
+        play_sample_row(tile, s->draw, queue, &g, i);
+}
+
+#else
+static inline void play_small_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue,
+                                      const edge_group *edges, int first, int end)
+{
+    (void)tile, (void)s, (void)queue, (void)edges, (void)first, (void)end;
+}
+#endif
 
 #endif

@@ -36,7 +36,7 @@ static inline quad_box quads_in_tile(const raster_tile *tile, const edge_group *
 /* Which triangles of the group are played here? */
 static inline uint32_t find_small(const raster_tile *tile, const raster_chunk *chunk, const edge_group *g)
 {
-    if (chunk->draw->lines || chunk->draw->points || tile->pass->samples > 1)
+    if (chunk->draw->lines || chunk->draw->points)
         return 0;
     quad_box box = quads_in_tile(tile, g);
     i32x width = box.x1 - box.x0, height = box.y1 - box.y0;
@@ -99,12 +99,13 @@ static inline void list_quads(const raster_tile *tile, const edge_group *g, smal
 }
 
 #if AMB_LANES == 16
-/* Drops the quads that lie wholly outside some edge: a lane a quad, which is tested at its innermost pixel. */
-static inline void sieve_quads(small_group *m)
+/* Drops the quads that lie wholly outside some edge of constant c: a lane a quad, which is tested at its innermost
+ * pixel. */
+static inline void sieve_quads(small_group *m, const i32x c[3])
 {
     i32x innermost[3];
     for (int i = 0; i < 3; i++)
-        innermost[i] = m->c[i] + i_max(m->a[i], i_set(0)) + i_max(m->b[i], i_set(0));
+        innermost[i] = c[i] + i_max(m->a[i], i_set(0)) + i_max(m->b[i], i_set(0));
     int kept = 0;
     for (int first = 0; first < m->count; first += AMB_LANES) {
         i32x quad = i_load(m->quad + first), triangle = quad & 255, x = quad >> 8 & 255, y = quad >> 16;
@@ -119,7 +120,7 @@ static inline void sieve_quads(small_group *m)
     m->count = kept;
 }
 #else
-static inline void sieve_quads(small_group *m) { (void)m; }
+static inline void sieve_quads(small_group *m, const i32x c[3]) { (void)m, (void)c; }
 #endif
 
 /* Where the lanes' quads lie in the tile. */
@@ -152,21 +153,29 @@ static inline uint32_t take_quads(raster_queue *queue, const raster_quads *q, ui
     return AMB_ALL_LANES;
 }
 
-/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. */
-static inline void play_quads(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, const raster_quads *q,
+/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. q->samples: those covered. */
+static inline void play_quads(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, raster_quads *q,
                               maskx cover)
 {
-    const bool late = tests_late(draw);
+    const bool late = tests_late(draw), several = tile->pass->samples > 1;
     const maskx front = q->primitive_front < 0;
+    const i32x samples = several ? q->samples : i_set(0);
     for (uint32_t covered = m_bits(cover), taken; covered != 0; covered &= ~taken) {
         cover = m_from_bits(covered);
         uint32_t live = covered;
-        if (draw->fragment && !late)
+        if (draw->fragment && !late && several) {
+            q->samples = samples_passing(tile, draw, &q->at, front, samples, q->sample_depth, true);
+            live &= m_bits(q->samples != 0);
+        } else if (draw->fragment && !late) {
             live &= m_bits(output_tests(tile, draw, &q->at, 0, front, q->depth, true));
+        }
         taken = take_quads(queue, q, covered, live);
         live &= taken;
         if (!draw->fragment) {
-            update_depth_stencil(tile, draw, &q->at, 0, front, q->depth, m_from_bits(live), true);
+            if (several)
+                update_samples(tile, draw, &q->at, front, samples & m_from_bits(live), q->sample_depth, true);
+            else
+                update_depth_stencil(tile, draw, &q->at, 0, front, q->depth, m_from_bits(live), true);
             for (int i = 0; i < RASTER_QUADS; i++)
                 queue->waiting[q->index[i]] = 0;
         } else if (live != 0) {
@@ -175,6 +184,13 @@ static inline void play_quads(const raster_tile *tile, const amb_draw *draw, ras
         if (taken != AMB_ALL_LANES)
             flush_queue(tile, queue);
     }
+}
+
+static inline void take_varyings(const small_group *m, int first, raster_quads *q)
+{
+    for (int i = 0; i < RASTER_QUADS; i++)
+        for (int k = 0; k < 3; k++)
+            q->varying[k][i] = m->varying[k][m->quad[first + i] & 255];
 }
 
 /* RASTER_QUADS of the row, from `first` on. */
@@ -203,25 +219,29 @@ static inline void play_row(const raster_tile *tile, const amb_draw *draw, raste
                          permute(m->depth_bias, triangle));
     q.position = (x + tile->x0) | ((y + tile->y0) << 16);
     q.primitive_front = permute_i(m->primitive_front, triangle);
-    for (int i = 0; i < RASTER_QUADS; i++)
-        for (int k = 0; k < 3; k++)
-            q.varying[k][i] = m->varying[k][m->quad[first + i] & 255];
+    take_varyings(m, first, &q);
     locate_quads(tile, x, y, &q);
     play_quads(tile, draw, queue, &q, cover);
 }
 
-/* Triangles first…end-1 of the group, all of them small. */
+/* Lists the quads of triangles first…end-1 of the group, all of them small. */
+static inline void gather_small(const raster_tile *tile, raster_shading *s, const edge_group *g, small_group *m,
+                                int first, int end)
+{
+    gather_edges(tile, g, m);
+    prepare_group(s, g, m, first, end);
+    for (int k = 0; k < 3; k++)
+        for (int n = 0; n < AMB_LANES; n++)
+            m->varying[k][n] = raster_vertex_at(s->chunk, g->number[k][n])->varying;
+    list_quads(tile, g, m, first, end);
+}
+
 static void play_small(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *g, int first,
                        int end)
 {
     small_group m;
-    gather_edges(tile, g, &m);
-    prepare_group(s, g, &m, first, end);
-    for (int k = 0; k < 3; k++)
-        for (int n = 0; n < AMB_LANES; n++)
-            m.varying[k][n] = raster_vertex_at(s->chunk, g->number[k][n])->varying;
-    list_quads(tile, g, &m, first, end);
-    sieve_quads(&m);
+    gather_small(tile, s, g, &m, first, end);
+    sieve_quads(&m, m.c);
     i_store(m.quad + m.count, i_set(first)); /* whatever follows is a quad of some triangle */
     for (int i = 0; i < m.count; i += RASTER_QUADS)
         play_row(tile, s->draw, queue, &m, i);

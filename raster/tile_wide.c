@@ -1,7 +1,6 @@
 /* The tile stage: all chunks of a batch, in order, over one tile, from loading its pixels to storing them. */
 #include "raster/lines.h"
 #include "raster/multisample.h"
-#include "raster/small.h"
 #include "raster/tile_texture.h"
 
 #define raster_tile_play WIDE(raster_tile)
@@ -224,7 +223,10 @@ static inline void play_group(const raster_tile *tile, raster_shading *s, raster
         while (end < count && (small >> end & 1u) != 0)
             end++;
         if (end > n) {
-            play_small(tile, s, queue, &g, n, end);
+            if (tile->pass->samples > 1)
+                play_small_samples(tile, s, queue, &g, n, end);
+            else
+                play_small(tile, s, queue, &g, n, end);
             n = end;
         } else {
             play_one(tile, s, queue, &g, n++);
