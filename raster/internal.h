@@ -42,7 +42,7 @@
 #define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */
 #define RASTER_MAX_SAMPLES 8
 #define RASTER_TILE 64
-#define RASTER_SMALL_BOX 4 /* quads, edge: small triangles are played together, quad by quad */
+#define RASTER_SMALL_BOX 8 /* quads, edge: small triangles are played together, quad by quad */
 
 /* Clip codes of a vertex. */
 enum {

@@ -92,7 +92,7 @@ static inline void list_quads(const raster_tile *tile, const edge_group *g, smal
     m->count = 0;
     for (int n = first; n < end; n++) { /* whole boxes are written, the next begins where this one's quads end */
         const int32_t *offset = tile->boxes[shape[n]];
-        for (int k = 0; k < RASTER_SMALL_BOX * RASTER_SMALL_BOX; k += AMB_LANES)
+        for (int k = 0; k < quads[n]; k += AMB_LANES)
             i_store(m->quad + m->count + k, i_load(offset + k) + corner[n]);
         m->count += quads[n];
     }
