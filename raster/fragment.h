@@ -208,6 +208,13 @@ static inline i32x block_position(const raster_tile *tile, int bx, int by)
            ((i_set(tile->y0 + by * AMB_BLOCK_H) + i_block_y()) << 16);
 }
 
+static inline bool all_quads_live(uint32_t live)
+{
+    live |= live >> 1;
+    live |= live >> 2;
+    return (live & (AMB_ALL_LANES / 15u)) == AMB_ALL_LANES / 15u;
+}
+
 /* ---- the queue of quads ----------------------------------------------------------------------------------------- */
 
 /* Quads anywhere in the tile, each of any triangle of the draw. */
@@ -240,13 +247,17 @@ static inline f32x permute(f32x a, i32x index)
 }
 static inline i32x permute_i(i32x a, i32x index) { return f_bits(permute(f_from_bits(a), index)); }
 
-#if AMB_LANES == 16
-/* The kept lanes moved together, in order; 0 after them. */
+/* The kept lanes moved together, in order; others after them. */
 static inline i32x i_compress(i32x a, maskx kept)
 {
+#if AMB_LANES == 16
     return (i32x)_mm512_maskz_compress_epi32((__mmask16)m_bits(kept), (__m512i)a);
-}
+#else
+    uint64_t bytes = _pdep_u64(m_bits(kept), 0x0101010101010101u) * 0xff; /* of the numbers of lanes */
+    __m128i index = _mm_cvtsi64_si128((int64_t)_pext_u64(0x0706050403020100u, bytes));
+    return permute_i(a, (i32x)_mm256_cvtepu8_epi32(index));
 #endif
+}
 
 /* Lane `component` of every quad, to all lanes of the quad. */
 #if AMB_LANES == 16
@@ -371,13 +382,6 @@ static inline void block_quads(raster_quads *q, const raster_shading *s, float *
 #else
 static inline void flush_queue(const raster_tile *tile, raster_queue *queue) { (void)tile, (void)queue; }
 #endif
-
-static inline bool all_quads_live(uint32_t live)
-{
-    live |= live >> 1;
-    live |= live >> 2;
-    return (live & (AMB_ALL_LANES / 15u)) == AMB_ALL_LANES / 15u;
-}
 
 /* ---- blocks ----------------------------------------------------------------------------------------------------- */
 

@@ -149,22 +149,20 @@ static inline void gather_sample_edges(const raster_tile *tile, sample_group *g,
 /* An edge function as a weight: in the unit that coverage.h gives it, and rounded once as there. */
 static inline f32x sample_weight(i32x e) { return i_to_f(e) * (1.0f / 256.0f); }
 
-/* RASTER_QUADS of the row, from `first` on. */
+/* The first `most` of RASTER_QUADS of the row, from `first` on. */
 static inline void play_sample_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue,
-                                   const sample_group *g, int first)
+                                   const sample_group *g, int first, int most)
 {
     const small_group *m = &g->m;
     i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2), triangle = quad & 255;
-    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16) + (i_lane_index() >> 1 & 1);
-    maskx wanted = i_lane_index() < 4 * (m->count - first);
-    if (tile->clipped)
-        wanted &= (x >= tile->clip_x0) & (x < tile->clip_x1) & (y >= tile->clip_y0) & (y < tile->clip_y1);
+    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16 & 255) + (i_lane_index() >> 1 & 1);
+    raster_quads q;
+    maskx wanted = take_row(tile, m, first, most, quad, &q);
     i32x e[3];
     for (int i = 0; i < 3; i++)
         e[i] = u_as_i(i_as_u(permute_i(u_as_i(g->c[i]), triangle)) +
                       i_as_u(permute_i(m->a[i], triangle) * RASTER_SUBPIXEL) * i_as_u(x) +
                       i_as_u(permute_i(m->b[i], triangle) * RASTER_SUBPIXEL) * i_as_u(y));
-    raster_quads q;
     q.samples = i_set(0);
     for (int n = 0; n < tile->pass->samples; n++) {
         const i32x *offset = g->offset[n];
@@ -190,9 +188,7 @@ static inline void play_sample_row(const raster_tile *tile, const amb_draw *draw
             DEPTH_(e[1] + permute_i(g->offset[n][1], triangle), e[2] + permute_i(g->offset[n][2], triangle));
 #undef DEPTH_
     q.position = (x + tile->x0) | ((y + tile->y0) << 16);
-    q.primitive_front = permute_i(m->primitive_front, triangle);
     take_varyings(m, first, &q);
-    locate_quads(tile, x, y, &q);
     play_quads(tile, draw, queue, &q, cover);
 }
 
@@ -203,10 +199,9 @@ static void play_small_samples(const raster_tile *tile, raster_shading *s, raste
     i32x reach[3];
     gather_small(tile, s, edges, &g.m, first, end);
     gather_sample_edges(tile, &g, reach);
-    sieve_quads(&g.m, reach);
-    i_store(g.m.quad + g.m.count, i_set(first)); /* whatever follows is a quad of some triangle */
-    for (int i = 0; i < g.m.count; i += RASTER_QUADS)
-        play_sample_row(tile, s->draw, queue, &g, i);
+    sieve_quads(tile, &g.m, reach);
+    for (int i = 0, most = first_row(queue); i < g.m.count; i += most, most = RASTER_QUADS)
+        play_sample_row(tile, s->draw, queue, &g, i, most);
 }
 
 #else

@@ -1,6 +1,7 @@
 /* Small triangles, up to AMB_LANES of a draw together. Each has few quads in its box; all their quads are written in a
- * row, triangle by triangle, and taken RASTER_QUADS at a time: a lane is a pixel with the numbers of its own triangle.
- * So lanes are not wasted on a block around every triangle, and what a triangle costs alone is next to nothing.
+ * row, triangle by triangle. First a lane is a quad with the numbers of its own triangle: those without a covered pixel
+ * are dropped. Then a lane is a pixel, RASTER_QUADS quads at a time. So lanes are not wasted on a block around every
+ * triangle, and what a triangle costs alone is next to nothing.
  *
  * Values are those of coverage.h and fragment.h to the last bit. Part of tile_wide.c. */
 #ifndef AMBIANCE_RASTER_SMALL_H
@@ -10,14 +11,18 @@
 
 #if AMB_LANES > 4
 
+#define RASTER_GROUP_QUADS (AMB_LANES * RASTER_SMALL_BOX * RASTER_SMALL_BOX + AMB_LANES)
+
 typedef struct small_group {
     i32x c[3], a[3], b[3]; /* edge functions, from the tile's first pixel */
     f32x bias[3], inverse_area;
     f32x z0, dz1, dz2, inverse_w[3], depth_bias;
     i32x primitive_front;
     const float *varying[3][AMB_LANES];
-    int count;                                                                 /* quads */
-    int32_t quad[AMB_LANES * RASTER_SMALL_BOX * RASTER_SMALL_BOX + AMB_LANES]; /* triangle | x << 8 | y << 16, pixels */
+    int count;                         /* quads */
+    int32_t quad[RASTER_GROUP_QUADS];  /* triangle | x << 8 | y << 16, pixels; | covered pixels << 24, once sieved */
+    int32_t place[RASTER_GROUP_QUADS]; /* floats from the tile's first to the quad's plane 0 */
+    int32_t index[RASTER_GROUP_QUADS]; /* of the quad in its tile */
 } small_group;
 
 /* The quads that a triangle's box touches inside the tile, first and last. */
@@ -90,7 +95,7 @@ static inline void list_quads(const raster_tile *tile, const edge_group *g, smal
     i_store(shape, width + height * RASTER_SMALL_BOX);
     i_store(quads, (width + 1) * (height + 1));
     m->count = 0;
-    for (int n = first; n < end; n++) { /* whole boxes are written, the next begins where this one's quads end */
+    for (int n = first; n < end; n++) { /* whole vectors are written, the next begins where this one's quads end */
         const int32_t *offset = tile->boxes[shape[n]];
         for (int k = 0; k < quads[n]; k += AMB_LANES)
             i_store(m->quad + m->count + k, i_load(offset + k) + corner[n]);
@@ -98,46 +103,58 @@ static inline void list_quads(const raster_tile *tile, const edge_group *g, smal
     }
 }
 
-#if AMB_LANES == 16
-/* Drops the quads that lie wholly outside some edge of constant c: a lane a quad, which is tested at its innermost
- * pixel. */
-static inline void sieve_quads(small_group *m, const i32x c[3])
+/* The pixels of the quads that their triangles cover, by edge functions of constant c: bits 24 to 27. */
+static inline i32x covered_pixels(const raster_tile *tile, const small_group *m, const i32x c[3], i32x quad)
 {
-    i32x innermost[3];
-    for (int i = 0; i < 3; i++)
-        innermost[i] = c[i] + i_max(m->a[i], i_set(0)) + i_max(m->b[i], i_set(0));
+    i32x triangle = quad & 255, x = quad >> 8 & 255, y = quad >> 16;
+    i32x outside[4] = {{0}, {0}, {0}, {0}};
+    for (int i = 0; i < 3; i++) {
+        i32x a = permute_i(m->a[i], triangle), b = permute_i(m->b[i], triangle);
+        i32x e = permute_i(c[i], triangle) + a * x + b * y;
+        outside[0] |= e, outside[1] |= e + a, outside[2] |= e + b, outside[3] |= (e + a) + b;
+    }
+    if (tile->clipped)
+        for (int i = 0; i < 4; i++) {
+            i32x px = x + (i & 1), py = y + (i >> 1);
+            maskx in = (px >= tile->clip_x0) & (px < tile->clip_x1) & (py >= tile->clip_y0) & (py < tile->clip_y1);
+            outside[i] |= i_sel(in, i_set(0), i_set(-1));
+        }
+    i32x covered = i_set(0);
+    for (int i = 0; i < 4; i++)
+        covered |= ((i32x)((u32x)~outside[i] >> 31)) << (24 + i);
+    return covered;
+}
+
+/* Where quads lie in the tile: plane 0, and their number. */
+static inline void locate_quads(const raster_tile *tile, i32x quad, int32_t *place, int32_t *index)
+{
+    i32x x = quad >> 8 & 255, y = quad >> 16 & 255;
+#if AMB_LANES == 16
+    i32x block = (y >> 2) * tile->blocks_x + (x >> 2), part = (y & 2) | (x >> 1 & 1);
+#else
+    i32x block = (y >> 1) * tile->blocks_x + (x >> 2), part = x >> 1 & 1;
+#endif
+    i_store(place, block * (block_planes(tile) * AMB_LANES) + part * 4);
+    i_store(index, block * RASTER_QUADS + part);
+}
+
+/* Keeps the quads of which a pixel is covered, by edge functions of constant c: a lane a quad. */
+static inline void sieve_quads(const raster_tile *tile, small_group *m, const i32x c[3])
+{
     int kept = 0;
     for (int first = 0; first < m->count; first += AMB_LANES) {
-        i32x quad = i_load(m->quad + first), triangle = quad & 255, x = quad >> 8 & 255, y = quad >> 16;
-        i32x outside = i_set(0);
-        for (int i = 0; i < 3; i++)
-            outside |=
-                permute_i(innermost[i], triangle) + permute_i(m->a[i], triangle) * x + permute_i(m->b[i], triangle) * y;
-        maskx inside = (outside >= 0) & (i_lane_index() < m->count - first);
-        i_store(m->quad + kept, i_compress(quad, inside)); /* never past what was read */
-        kept += __builtin_popcount(m_bits(inside));
+        i32x quad = i_load(m->quad + first), covered = covered_pixels(tile, m, c, quad);
+        maskx some = (covered != 0) & (i_lane_index() < m->count - first);
+        quad = i_compress(quad | covered, some);
+        i_store(m->quad + kept, quad); /* never past what was read */
+        locate_quads(tile, quad, m->place + kept, m->index + kept);
+        kept += __builtin_popcount(m_bits(some));
     }
     m->count = kept;
-}
-#else
-static inline void sieve_quads(small_group *m, const i32x c[3]) { (void)m, (void)c; }
-#endif
-
-/* Where the lanes' quads lie in the tile. */
-static inline void locate_quads(const raster_tile *tile, i32x x, i32x y, raster_quads *q)
-{
-#if AMB_LANES == 16
-    i32x block = (y >> 2) * tile->blocks_x + (x >> 2), quad = (y & 2) | (x >> 1 & 1);
-#else
-    i32x block = (y >> 1) * tile->blocks_x + (x >> 2), quad = x >> 1 & 1;
-#endif
-    int32_t index[AMB_LANES], offset[AMB_LANES];
-    i_store(index, block * RASTER_QUADS + quad);
-    i_store(offset, block * (block_planes(tile) * AMB_LANES) + quad * 4);
-    for (int i = 0; i < RASTER_QUADS; i++) {
-        q->index[i] = (uint16_t)index[4 * i];
-        q->at.quad[i] = tile->data + offset[4 * i];
-    }
+    /* What a row reads past them is a quad without covered pixels. */
+    i_store(m->quad + kept, i_set(0));
+    i_store(m->place + kept, i_set(0));
+    i_store(m->index + kept, i_set(0));
 }
 
 /* The quads from `first` on whose covered pixels are not waiting, in the queue or before them in the row: their lanes.
@@ -153,29 +170,41 @@ static inline uint32_t take_quads(raster_queue *queue, const raster_quads *q, ui
     return AMB_ALL_LANES;
 }
 
-/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. q->samples: those covered. */
-static inline void play_quads(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, raster_quads *q,
-                              maskx cover)
+/* The covered lanes that pass the early tests; q->samples: of `samples`, those that do. */
+static inline uint32_t test_early(const raster_tile *tile, const amb_draw *draw, raster_quads *q, i32x samples,
+                                  uint32_t covered)
 {
-    const bool late = tests_late(draw), several = tile->pass->samples > 1;
     const maskx front = q->primitive_front < 0;
-    const i32x samples = several ? q->samples : i_set(0);
-    for (uint32_t covered = m_bits(cover), taken; covered != 0; covered &= ~taken) {
-        cover = m_from_bits(covered);
-        uint32_t live = covered;
-        if (draw->fragment && !late && several) {
-            q->samples = samples_passing(tile, draw, &q->at, front, samples, q->sample_depth, true);
-            live &= m_bits(q->samples != 0);
-        } else if (draw->fragment && !late) {
-            live &= m_bits(output_tests(tile, draw, &q->at, 0, front, q->depth, true));
-        }
+    if (tests_late(draw))
+        return covered;
+    if (tile->pass->samples == 1)
+        return covered & m_bits(output_tests(tile, draw, &q->at, 0, front, q->depth, true));
+    q->samples = samples_passing(tile, draw, &q->at, front, samples, q->sample_depth, true);
+    return covered & m_bits(q->samples != 0);
+}
+
+/* Tests and writes the lanes for good, without a shader. */
+static inline void update_quads(const raster_tile *tile, const amb_draw *draw, const raster_quads *q, i32x samples,
+                                maskx live)
+{
+    const maskx front = q->primitive_front < 0;
+    if (tile->pass->samples == 1)
+        update_depth_stencil(tile, draw, &q->at, 0, front, q->depth, live, true);
+    else
+        update_samples(tile, draw, &q->at, front, samples & live, q->sample_depth, true);
+}
+
+/* play_quads where one pixel is covered twice: quad by quad as far as needed. */
+static __attribute__((noinline)) void play_in_order(const raster_tile *tile, const amb_draw *draw, raster_queue *queue,
+                                                    raster_quads *q, uint32_t covered)
+{
+    const i32x samples = tile->pass->samples > 1 ? q->samples : i_set(0);
+    for (uint32_t taken; covered != 0; covered &= ~taken) {
+        uint32_t live = draw->fragment ? test_early(tile, draw, q, samples, covered) : covered;
         taken = take_quads(queue, q, covered, live);
         live &= taken;
         if (!draw->fragment) {
-            if (several)
-                update_samples(tile, draw, &q->at, front, samples & m_from_bits(live), q->sample_depth, true);
-            else
-                update_depth_stencil(tile, draw, &q->at, 0, front, q->depth, m_from_bits(live), true);
+            update_quads(tile, draw, q, samples, m_from_bits(live));
             for (int i = 0; i < RASTER_QUADS; i++)
                 queue->waiting[q->index[i]] = 0;
         } else if (live != 0) {
@@ -186,6 +215,59 @@ static inline void play_quads(const raster_tile *tile, const amb_draw *draw, ras
     }
 }
 
+/* Is a pixel covered by two quads of the row, or already waiting? */
+static inline bool meets_others(const raster_queue *queue, const raster_quads *q, maskx cover)
+{
+    i32x pixel = i_sel(cover, q->position, ~i_lane_index()); /* one's own where not covered */
+#if AMB_LANES == 16
+    maskx same = (pixel == (i32x)_mm512_shuffle_i32x4((__m512i)pixel, (__m512i)pixel, 0x39)) |
+                 (pixel == (i32x)_mm512_shuffle_i32x4((__m512i)pixel, (__m512i)pixel, 0x4e));
+#else
+    maskx same = pixel == (i32x)_mm256_permute2x128_si256((__m256i)pixel, (__m256i)pixel, 1);
+#endif
+    if (m_any(same))
+        return true;
+    if (queue->count == 0)
+        return false;
+    uint32_t waiting = 0;
+    for (uint32_t i = 0; i < RASTER_QUADS; i++)
+        waiting |= (uint32_t)queue->waiting[q->index[i]] << 4 * i;
+    return (waiting & m_bits(cover)) != 0;
+}
+
+/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. q->samples: those covered. */
+static inline void play_quads(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, raster_quads *q,
+                              maskx cover)
+{
+    const i32x samples = tile->pass->samples > 1 ? q->samples : i_set(0);
+    if (meets_others(queue, q, cover)) {
+        play_in_order(tile, draw, queue, q, m_bits(cover));
+        return;
+    }
+    if (!draw->fragment) {
+        update_quads(tile, draw, q, samples, cover);
+        return;
+    }
+    uint32_t live = test_early(tile, draw, q, samples, m_bits(cover));
+    if (queue->count == 0 && all_quads_live(live))
+        shade_quads(tile, draw, q, live);
+    else if (live != 0)
+        queue_quads(tile, queue, q, live);
+}
+
+/* What the row's quads from `first` on have of their own, and which lanes of the first `most` may be covered. */
+static inline maskx take_row(const raster_tile *tile, const small_group *m, int first, int most, i32x quad,
+                             raster_quads *q)
+{
+    for (int i = 0; i < RASTER_QUADS; i++) {
+        q->index[i] = (uint16_t)m->index[first + i];
+        q->at.quad[i] = tile->data + m->place[first + i];
+    }
+    q->primitive_front = permute_i(m->primitive_front, quad & 255);
+    i32x pixel = i_set(1 << 24) << (i_lane_index() & 3);
+    return ((quad & pixel) != 0) & (i_lane_index() < 4 * most);
+}
+
 static inline void take_varyings(const small_group *m, int first, raster_quads *q)
 {
     for (int i = 0; i < RASTER_QUADS; i++)
@@ -193,34 +275,29 @@ static inline void take_varyings(const small_group *m, int first, raster_quads *
             q->varying[k][i] = m->varying[k][m->quad[first + i] & 255];
 }
 
-/* RASTER_QUADS of the row, from `first` on. */
+/* The first `most` of RASTER_QUADS of the row, from `first` on. */
 static inline void play_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, const small_group *m,
-                            int first)
+                            int first, int most)
 {
     i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2), triangle = quad & 255;
-    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16) + (i_lane_index() >> 1 & 1);
-    i32x e[3];
-    for (int i = 0; i < 3; i++)
-        e[i] = permute_i(m->c[i], triangle) + permute_i(m->a[i], triangle) * x + permute_i(m->b[i], triangle) * y;
-    maskx cover = ((e[0] | e[1] | e[2]) >= 0) & (i_lane_index() < 4 * (m->count - first));
-    if (tile->clipped)
-        cover &= (x >= tile->clip_x0) & (x < tile->clip_x1) & (y >= tile->clip_y0) & (y < tile->clip_y1);
-    if (!m_any(cover))
-        return;
+    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16 & 255) + (i_lane_index() >> 1 & 1);
     raster_quads q;
+    maskx cover = take_row(tile, m, first, most, quad, &q);
+    q.position = (x + tile->x0) | ((y + tile->y0) << 16);
     f32x weight[3];
-    for (int i = 0; i < 3; i++) {
-        weight[i] = i_to_f(e[i]) + permute(m->bias[i], triangle);
-        q.p[i] = weight[i] * permute(m->inverse_w[i], triangle);
-    }
+    for (int i = 0; i < 3; i++)
+        weight[i] =
+            i_to_f(permute_i(m->c[i], triangle) + permute_i(m->a[i], triangle) * x + permute_i(m->b[i], triangle) * y) +
+            permute(m->bias[i], triangle);
     f32x inverse_area = permute(m->inverse_area, triangle);
     q.depth = f_saturate(((permute(m->z0, triangle) + permute(m->dz1, triangle) * (weight[1] * inverse_area)) +
                           permute(m->dz2, triangle) * (weight[2] * inverse_area)) +
                          permute(m->depth_bias, triangle));
-    q.position = (x + tile->x0) | ((y + tile->y0) << 16);
-    q.primitive_front = permute_i(m->primitive_front, triangle);
-    take_varyings(m, first, &q);
-    locate_quads(tile, x, y, &q);
+    if (draw->fragment) {
+        for (int i = 0; i < 3; i++)
+            q.p[i] = weight[i] * permute(m->inverse_w[i], triangle);
+        take_varyings(m, first, &q);
+    }
     play_quads(tile, draw, queue, &q, cover);
 }
 
@@ -236,15 +313,17 @@ static inline void gather_small(const raster_tile *tile, raster_shading *s, cons
     list_quads(tile, g, m, first, end);
 }
 
+/* How many quads the first row takes: they fill the queue, so that the next are shaded as they lie. */
+static inline int first_row(const raster_queue *queue) { return RASTER_QUADS - queue->count; }
+
 static void play_small(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *g, int first,
                        int end)
 {
     small_group m;
     gather_small(tile, s, g, &m, first, end);
-    sieve_quads(&m, m.c);
-    i_store(m.quad + m.count, i_set(first)); /* whatever follows is a quad of some triangle */
-    for (int i = 0; i < m.count; i += RASTER_QUADS)
-        play_row(tile, s->draw, queue, &m, i);
+    sieve_quads(tile, &m, m.c);
+    for (int i = 0, most = first_row(queue); i < m.count; i += most, most = RASTER_QUADS)
+        play_row(tile, s->draw, queue, &m, i, most);
 }
 
 #else
