@@ -128,9 +128,7 @@ static bool make_workers(amb_pass *pass)
 
 bool raster_reserve_vertices(raster_chunk *chunk, size_t count)
 {
-    return raster_grow(&chunk->x, &chunk->x_capacity, count, sizeof *chunk->x) &&
-           raster_grow(&chunk->y, &chunk->y_capacity, count, sizeof *chunk->y) &&
-           raster_grow(&chunk->vertex, &chunk->vertex_capacity, count * chunk->stride, sizeof *chunk->vertex);
+    return raster_grow(&chunk->vertex, &chunk->vertex_capacity, count * chunk->stride, sizeof *chunk->vertex);
 }
 
 bool raster_reserve_triangles(raster_chunk *chunk, size_t count)
@@ -148,9 +146,7 @@ static bool reserve(raster_chunk *chunk, const raster_scratch *scratch)
     if (g->shader)
         vertices = triangles = (triangles + 15) / 16 * 16 * (size_t)g->vertices;
     vertices += 16, triangles += 16;
-    return raster_renew(&chunk->x, &chunk->x_capacity, vertices, sizeof *chunk->x) &&
-           raster_renew(&chunk->y, &chunk->y_capacity, vertices, sizeof *chunk->y) &&
-           raster_renew(&chunk->vertex, &chunk->vertex_capacity, vertices * chunk->stride, sizeof *chunk->vertex) &&
+    return raster_renew(&chunk->vertex, &chunk->vertex_capacity, vertices * chunk->stride, sizeof *chunk->vertex) &&
            raster_renew(&chunk->triangle, &chunk->triangle_capacity, triangles, sizeof *chunk->triangle);
 }
 
@@ -180,6 +176,7 @@ static void chunk_job(void *user, int index, int thread)
     if (chunk->draw->state.geometry.shader)
         AMB_DISPATCH(isa, raster_geometry)(pass, chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_VERTICES, lap);
+    chunk->primitive = scratch->corner_count > 0 ? scratch->corner[3][0] : 0; /* they ascend */
     AMB_DISPATCH(isa, raster_setup)(pass, chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_SETUP, lap);
     raster_bin(pass, chunk, scratch);
@@ -235,7 +232,7 @@ static size_t chunk_bytes(const amb_pass *pass, const raster_chunk *chunk)
     if (g->shader)
         vertices = triangles *= (size_t)g->vertices;
     return (tiles + 1) * (sizeof(uint32_t) + sizeof(uint16_t)) +
-           (vertices * (chunk->stride + 2) + triangles * 2) * sizeof(uint32_t) + triangles * sizeof(raster_triangle);
+           (vertices * chunk->stride + triangles * 2) * sizeof(uint32_t) + triangles * sizeof(raster_triangle);
 }
 
 /* What one holds that has been through the geometry stages: mostly far less. */
@@ -245,7 +242,7 @@ static size_t ready_bytes(const amb_pass *pass, const raster_chunk *chunk)
     size_t entries = chunk->binned ? 2 * tiles + chunk->tile_start[tiles] : 0;
     if (chunk->count == 0 || chunk->large_count > 0)
         entries += (chunk->count ? chunk->large_count : 0) + tiles;
-    return sizeof *chunk + (size_t)chunk->vertex_count * (chunk->stride + 2) * sizeof(uint32_t) +
+    return sizeof *chunk + (size_t)chunk->vertex_count * chunk->stride * sizeof(uint32_t) +
            (size_t)chunk->triangle_count * sizeof(raster_triangle) + entries * sizeof(uint16_t);
 }
 

@@ -9,8 +9,8 @@ typedef struct tile_box {
 
 static tile_box box_of(const raster_triangle *t, unsigned shift)
 {
-    return (tile_box){(t->low & 0xffffu) >> shift, t->low >> 16 >> shift, (t->high & 0xffffu) >> shift,
-                      t->high >> 16 >> shift};
+    return (tile_box){(t->x0_y0 & 0xffffu) >> shift, t->x0_y0 >> 16 >> shift, t->v1_x1 >> 16 >> shift,
+                      t->v2_y1 >> 16 >> shift};
 }
 
 static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) > RASTER_LARGE_TILES; }

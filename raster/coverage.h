@@ -141,16 +141,22 @@ static inline bool fits_32_bits(const int32_t x[3], const int32_t y[3], const ra
     return true;
 }
 
+static inline void window_corners(const raster_shading *s, int32_t x[3], int32_t y[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const raster_vertex *v = raster_vertex_at(s->chunk, s->number[i]);
+        x[i] = v->x, y[i] = v->y;
+    }
+}
+
 /* A triangle of any size. */
 static void play_large(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low, uint32_t high)
 {
-    const raster_chunk *chunk = s->chunk;
     raster_box box = box_in_tile(tile, low, high);
     if (box.x0 > box.x1)
         return;
     int32_t x[3], y[3];
-    for (int i = 0; i < 3; i++)
-        x[i] = chunk->x[s->number[i]], y[i] = chunk->y[s->number[i]];
+    window_corners(s, x, y);
     int64_t px = ((int64_t)tile->x0 + box.x0 * AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
     int64_t py = ((int64_t)tile->y0 + box.y0 * AMB_BLOCK_H) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
     int64_t right = (box.x1 - box.x0 + 1) * AMB_BLOCK_W - 1, down = (box.y1 - box.y0 + 1) * AMB_BLOCK_H - 1;
@@ -192,17 +198,19 @@ static inline i32x box_origin(i32x bound, int tile_first, int block)
 
 static inline void make_group(const raster_tile *tile, const raster_chunk *chunk, const int32_t *index, edge_group *g)
 {
-    u32x v[4], box[4], vertex[4];
-    i32x x[3], y[3], at = i_load(index) * (int32_t)(sizeof(raster_triangle) / sizeof(uint32_t));
-    fetch_4(chunk->triangle->v, at, v);
-    fetch_2(&chunk->triangle->low, at, box);
-    i32x low = u_as_i(box[0]);
+    u32x record[4], vertex[4];
+    i32x x[3], y[3];
+    fetch_4(&chunk->triangle->v0_primitive, i_load(index) * (int32_t)(sizeof(raster_triangle) / sizeof(uint32_t)),
+            record);
+    i32x low = u_as_i(record[3]);
     i_store((int32_t *)(void *)g->low, low);
-    i_store((int32_t *)(void *)g->high, u_as_i(box[1]));
-    i_store((int32_t *)(void *)g->primitive_front, u_as_i(v[3]));
+    i_store((int32_t *)(void *)g->high, u_as_i(record[1] >> 16 | (record[2] & 0xffff0000u)));
+    i_store((int32_t *)(void *)g->primitive_front,
+            u_as_i(((record[0] >> 16 & 0x7fffu) + chunk->primitive) | (record[0] & 0x80000000u)));
     for (int i = 0; i < 3; i++) {
-        i_store((int32_t *)(void *)g->number[i], u_as_i(v[i]));
-        fetch_4(chunk->vertex, u_as_i(v[i]) * (int32_t)chunk->stride, vertex);
+        i32x number = u_as_i(record[i] & 0xffffu);
+        i_store((int32_t *)(void *)g->number[i], number);
+        fetch_4(chunk->vertex, number * (int32_t)chunk->stride, vertex);
         g->z[i] = f_from_bits(u_as_i(vertex[0])), g->inverse_w[i] = f_from_bits(u_as_i(vertex[1]));
         x[i] = u_as_i(vertex[2]), y[i] = u_as_i(vertex[3]);
     }

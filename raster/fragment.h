@@ -31,7 +31,7 @@ static inline float depth_bias(const raster_shading *s)
 {
     const amb_draw *draw = s->draw;
     const raster_chunk *chunk = s->chunk;
-    const uint32_t *v = s->number;
+    const raster_vertex *const *v = s->vertex;
     float most = amb_s_max(amb_s_max(s->vertex[0]->z, s->vertex[1]->z), s->vertex[2]->z), unit, slope = 0.0f;
     uint32_t bits;
     memcpy(&bits, &most, sizeof bits);
@@ -40,8 +40,8 @@ static inline float depth_bias(const raster_shading *s)
     memcpy(&unit, &bits, sizeof unit);
     if (!chunk->draw->lines && !chunk->draw->points) {
         /* Edge functions 1 and 2 change by a per pixel to the right and b per pixel down. */
-        float a1 = (float)(chunk->y[v[2]] - chunk->y[v[0]]), b1 = (float)(chunk->x[v[0]] - chunk->x[v[2]]);
-        float a2 = (float)(chunk->y[v[0]] - chunk->y[v[1]]), b2 = (float)(chunk->x[v[1]] - chunk->x[v[0]]);
+        float a1 = (float)(v[2]->y - v[0]->y), b1 = (float)(v[0]->x - v[2]->x);
+        float a2 = (float)(v[0]->y - v[1]->y), b2 = (float)(v[1]->x - v[0]->x);
         float dx = (s->dz1 * a1 + s->dz2 * a2) * s->inverse_area, dy = (s->dz1 * b1 + s->dz2 * b2) * s->inverse_area;
         dx = dx < 0.0f ? -dx : dx, dy = dy < 0.0f ? -dy : dy;
         slope = amb_s_max(dx, dy);

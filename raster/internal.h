@@ -28,7 +28,7 @@
 #define RASTER_GRID_PIXELS 524288.0f /* window coordinates beyond are nowhere */
 #define RASTER_CHUNK_TRIANGLES 4096  /* triangles a chunk, before clipping */
 #define RASTER_CHUNK_VERTICES (3 * RASTER_CHUNK_TRIANGLES)
-#define RASTER_CHUNK_EMITTED 8192 /* vertices and primitives a chunk's geometry shader may emit */
+#define RASTER_CHUNK_EMITTED 6144 /* vertices and primitives a chunk's geometry shader may emit */
 #define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
 #define RASTER_PATCH_WINDOW 16384 /* patches hull-shaded at a time, at most */
 #define RASTER_PATCH_BYTES ((size_t)8 << 20)
@@ -38,6 +38,7 @@
 #define RASTER_BATCH_CHUNKS 2048 /* more would not use their memory again; their numbers fit 16 bits */
 #define RASTER_UNBINNED 64       /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
+#define RASTER_NOWHERE (1 << 30)              /* beyond every window coordinate */
 #define RASTER_MAX_POINT 4096.0f
 #define RASTER_VERTEX_WORDS 4 /* of raster_vertex before its varyings */
 #define RASTER_MAX_SAMPLES 8
@@ -72,17 +73,22 @@ typedef struct raster_draw {
 typedef struct raster_vertex {
     float z; /* depth 0…1 */
     float inverse_w;
-    int32_t x, y; /* window, 1/256 pixel; of vertices that need no clipping */
+    int32_t x, y; /* window, 1/256 pixel; x is RASTER_NOWHERE where a triangle would need clipping */
     float varying[];
 } raster_vertex;
 
-/* A triangle left by set-up. Tiles fetch them lanes-wide, four words at once. */
+/* A triangle left by set-up: 16 bits of each word are a vertex number, ordered so that the doubled area is positive
+ * with y down, or the first pixel's x. Tiles fetch all four words at once, lanes-wide. Bounds are inclusive, inside the
+ * target, of pixels that may be covered. */
 typedef struct raster_triangle {
-    uint32_t v[3];            /* vertex numbers, ordered so that the doubled area is positive with y down */
-    uint32_t primitive_front; /* running number in the draw, top bit: front face */
-    uint32_t low, high;       /* x | y << 16: inclusive bounds, inside the target, of pixels that may be covered */
-    uint32_t padding[2];
+    uint32_t v0_primitive; /* << 16: running number from the chunk's `primitive` on; top bit: front face */
+    uint32_t v1_x1, v2_y1; /* << 16: last pixel */
+    uint32_t x0_y0;        /* first pixel, x | y << 16 */
 } raster_triangle;
+
+_Static_assert(RASTER_CHUNK_VERTICES + RASTER_POLYGON * RASTER_CHUNK_TRIANGLES <= 65536, "16-bit vertex numbers");
+_Static_assert((1 + RASTER_POLYGON) * RASTER_CHUNK_EMITTED <= 65536, "16-bit vertex numbers");
+_Static_assert(RASTER_PATCH_WINDOW <= 32768 && RASTER_CHUNK_TRIANGLES <= 32768, "15-bit primitive numbers");
 
 typedef struct raster_chunk {
     const raster_draw *draw;
@@ -93,12 +99,12 @@ typedef struct raster_chunk {
     uint32_t skipped;
     uint32_t most_vertices; /* before it has any */
 
-    int32_t *x, *y;   /* of the vertices, for set-up: as in their records */
     uint32_t *vertex; /* raster_vertex records of `stride` words each */
     uint32_t stride, vertex_count;
-    size_t x_capacity, y_capacity, vertex_capacity, triangle_capacity;
+    size_t vertex_capacity, triangle_capacity;
     raster_triangle *triangle;
     uint32_t triangle_count;
+    uint32_t primitive;                          /* running number in the draw of the first */
     uint16_t tile_x0, tile_y0, tile_x1, tile_y1; /* tiles that the triangles' boxes touch */
     bool binned;                                 /* else all triangles are in `large` */
     uint32_t *tile_start;                        /* tiles + 1: where each tile's entries start */
@@ -111,6 +117,17 @@ typedef struct raster_chunk {
 static inline raster_vertex *raster_vertex_at(const raster_chunk *chunk, uint32_t number)
 {
     return (raster_vertex *)(void *)(chunk->vertex + (size_t)number * chunk->stride);
+}
+
+/* primitive_front: running number in the draw, top bit: front face. Bounds as in raster_triangle. */
+static inline raster_triangle raster_make_triangle(const raster_chunk *chunk, const uint32_t v[3],
+                                                   uint32_t primitive_front, int x0, int y0, int x1, int y1)
+{
+    return (raster_triangle){.v0_primitive =
+                                 v[0] | (primitive_front - chunk->primitive) << 16 | (primitive_front & 1u << 31),
+                             .v1_x1 = v[1] | (uint32_t)x1 << 16,
+                             .v2_y1 = v[2] | (uint32_t)y1 << 16,
+                             .x0_y0 = (uint32_t)x0 | (uint32_t)y0 << 16};
 }
 
 /* One worker's own memory. */

@@ -93,7 +93,8 @@ static void play_line(const raster_tile *tile, raster_shading *s, raster_queue *
 {
     const raster_chunk *chunk = s->chunk;
     const uint32_t *v = s->number;
-    raster_line line = {chunk->x[v[0]], chunk->y[v[0]], chunk->x[v[1]], chunk->y[v[1]], false};
+    const raster_vertex *from = raster_vertex_at(chunk, v[0]), *to = raster_vertex_at(chunk, v[1]);
+    raster_line line = {from->x, from->y, to->x, to->y, false};
     line.steep = llabs(line.y1 - line.y0) > llabs(line.x1 - line.x0);
     if (line.x0 == line.x1 && line.y0 == line.y1)
         return; /* never leaves a diamond */
@@ -107,7 +108,8 @@ static void play_line(const raster_tile *tile, raster_shading *s, raster_queue *
 /* A square about vertex 0, its left and upper edges inside, its right and lower ones outside. */
 static void play_point(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low, uint32_t high)
 {
-    int32_t x = s->chunk->x[s->number[0]], y = s->chunk->y[s->number[0]];
+    const raster_vertex *v = raster_vertex_at(s->chunk, s->number[0]);
+    const int32_t x = v->x, y = v->y;
     float size = s->draw->point_size > 0.0f ? s->draw->point_size : 1.0f;
     int32_t half = (int32_t)f_lane(f_round(f_set(size * (0.5f * (float)RASTER_SUBPIXEL))), 0);
     raster_box box = box_in_tile(tile, low, high);

@@ -74,15 +74,13 @@ static void cover_samples(const raster_tile *tile, raster_shading *s, raster_que
 static void play_multisample(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low,
                              uint32_t high)
 {
-    const raster_chunk *chunk = s->chunk;
     const int samples = tile->pass->samples;
     const int8_t *position = sample_positions(samples);
     raster_box box = box_in_tile(tile, low, high);
     if (box.x0 > box.x1)
         return;
     int32_t x[3], y[3];
-    for (int i = 0; i < 3; i++)
-        x[i] = chunk->x[s->number[i]], y[i] = chunk->y[s->number[i]];
+    window_corners(s, x, y);
     int64_t px = ((int64_t)tile->x0 + box.x0 * AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
     int64_t py = ((int64_t)tile->y0 + box.y0 * AMB_BLOCK_H) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
     sample_edges edges;

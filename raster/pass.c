@@ -49,8 +49,6 @@ static float guard_factor(int size)
 
 static void free_chunk(raster_chunk *chunk)
 {
-    free(chunk->x);
-    free(chunk->y);
     free(chunk->vertex);
     free(chunk->triangle);
     free(chunk->tile_start);

@@ -12,12 +12,12 @@ static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scrat
                          uint32_t primitive)
 {
     const amb_draw *draw = &chunk->draw->state;
-    const int32_t *x = chunk->x, *y = chunk->y;
-    const uint32_t a = v[0], b = v[1], c = v[2];
-    int64_t area = (int64_t)(x[b] - x[a]) * (y[c] - y[a]) - (int64_t)(x[c] - x[a]) * (y[b] - y[a]);
+    const raster_vertex *a = raster_vertex_at(chunk, v[0]), *b = raster_vertex_at(chunk, v[1]),
+                        *c = raster_vertex_at(chunk, v[2]);
+    int64_t area = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
     bool front = (area > 0) == draw->front_clockwise; /* y points down: positive is clockwise on the screen */
-    int32_t x0 = (min3(x[a], x[b], x[c]) + pass->low_round) >> 8, x1 = (max3(x[a], x[b], x[c]) - pass->high_round) >> 8;
-    int32_t y0 = (min3(y[a], y[b], y[c]) + pass->low_round) >> 8, y1 = (max3(y[a], y[b], y[c]) - pass->high_round) >> 8;
+    int32_t x0 = (min3(a->x, b->x, c->x) + pass->low_round) >> 8, x1 = (max3(a->x, b->x, c->x) - pass->high_round) >> 8;
+    int32_t y0 = (min3(a->y, b->y, c->y) + pass->low_round) >> 8, y1 = (max3(a->y, b->y, c->y) - pass->high_round) >> 8;
     const raster_draw *limits = chunk->draw;
     x0 = max2(x0, limits->x0), x1 = min2(x1, limits->x1 - 1), y0 = max2(y0, limits->y0), y1 = min2(y1, limits->y1 - 1);
     if (area == 0 || x0 > x1 || y0 > y1 || (draw->cull == AMB_CULL_BACK && !front) ||
@@ -25,10 +25,9 @@ static void add_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scrat
         scratch->stats.triangles_culled++;
         return;
     }
-    chunk->triangle[chunk->triangle_count++] = (raster_triangle){.v = {a, area > 0 ? b : c, area > 0 ? c : b},
-                                                                 .primitive_front = primitive | (front ? 1u << 31 : 0u),
-                                                                 .low = (uint32_t)x0 | (uint32_t)y0 << 16,
-                                                                 .high = (uint32_t)x1 | (uint32_t)y1 << 16};
+    const uint32_t turned[3] = {v[0], area > 0 ? v[1] : v[2], area > 0 ? v[2] : v[1]};
+    chunk->triangle[chunk->triangle_count++] =
+        raster_make_triangle(chunk, turned, primitive | (front ? 1u << 31 : 0u), x0, y0, x1, y1);
 }
 
 /* ---- the clipped ones ------------------------------------------------------------------------------------------- */
@@ -55,8 +54,6 @@ bool raster_make_vertex(const amb_pass *pass, raster_chunk *chunk, const uint32_
     if (!snap(x / w, half_w, half_w, &fixed_x) || !snap(y / w, -half_h, half_h, &fixed_y))
         return false;
     *number = chunk->vertex_count++;
-    chunk->x[*number] = fixed_x;
-    chunk->y[*number] = fixed_y;
     raster_vertex *v = raster_vertex_at(chunk, *number);
     v->z = z / w;
     v->inverse_w = 1.0f / w;

@@ -7,7 +7,8 @@ static void add(raster_chunk *chunk, raster_scratch *scratch, uint32_t from, uin
                 int32_t reach)
 {
     const raster_draw *limits = chunk->draw;
-    int32_t ax = chunk->x[from], ay = chunk->y[from], bx = chunk->x[to], by = chunk->y[to];
+    const raster_vertex *a = raster_vertex_at(chunk, from), *b = raster_vertex_at(chunk, to);
+    int32_t ax = a->x, ay = a->y, bx = b->x, by = b->y;
     int32_t x0 = ((ax < bx ? ax : bx) - reach - 128) >> 8, x1 = ((ax < bx ? bx : ax) + reach + 128) >> 8;
     int32_t y0 = ((ay < by ? ay : by) - reach - 128) >> 8, y1 = ((ay < by ? by : ay) + reach + 128) >> 8;
     x0 = x0 > limits->x0 ? x0 : limits->x0, x1 = x1 < limits->x1 ? x1 : limits->x1 - 1;
@@ -16,10 +17,8 @@ static void add(raster_chunk *chunk, raster_scratch *scratch, uint32_t from, uin
         scratch->stats.triangles_culled++;
         return;
     }
-    chunk->triangle[chunk->triangle_count++] = (raster_triangle){.v = {from, to, to},
-                                                                 .primitive_front = primitive_front,
-                                                                 .low = (uint32_t)x0 | (uint32_t)y0 << 16,
-                                                                 .high = (uint32_t)x1 | (uint32_t)y1 << 16};
+    const uint32_t corner[3] = {from, to, to};
+    chunk->triangle[chunk->triangle_count++] = raster_make_triangle(chunk, corner, primitive_front, x0, y0, x1, y1);
 }
 
 static raster_polygon_vertex corner_vertex(const raster_scratch *scratch, uint32_t v, int corner)

@@ -1,6 +1,8 @@
 /* Triangle set-up, AMB_LANES triangles at a time: drop, cull, orient and bound. What is left of a triangle is three
  * vertex numbers and a box of pixels; edge functions are made per tile. */
+#include "core/gather.h"
 #include "raster/internal.h"
+#include "raster/records.h"
 
 #define raster_setup WIDE(raster_setup)
 void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch);
@@ -46,15 +48,12 @@ static maskx touches_a_centre(const corners *c, i32x x0, i32x y0, i32x x1, i32x 
     return touched;
 }
 
-/* Appends the kept lanes in order. word[i]: of every lane. */
-static void append(raster_chunk *chunk, uint32_t kept, uint32_t word[6][AMB_LANES])
+/* Appends the kept lanes in order. words: of every lane, as transpose_words gives them. */
+static void append(raster_chunk *chunk, uint32_t kept, float words[4][AMB_LANES])
 {
     for (; kept != 0; kept &= kept - 1) {
-        int lane = __builtin_ctz(kept);
-        chunk->triangle[chunk->triangle_count++] = (raster_triangle){.v = {word[0][lane], word[1][lane], word[2][lane]},
-                                                                     .primitive_front = word[3][lane],
-                                                                     .low = word[4][lane],
-                                                                     .high = word[5][lane]};
+        uint32_t lane = (uint32_t)__builtin_ctz(kept);
+        memcpy(&chunk->triangle[chunk->triangle_count++], &words[lane & 3][lane & ~3u], sizeof *chunk->triangle);
     }
 }
 
@@ -64,15 +63,15 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
     const raster_draw *limits = chunk->draw;
     const amb_draw *draw = &limits->state;
     corners c;
-    i32x code = i_set(0);
     for (int i = 0; i < 3; i++) {
+        u32x vertex[4];
         c.number[i] = i_load((const int32_t *)(const void *)(scratch->corner[i] + first));
-        c.x[i] = i_gather(chunk->x, c.number[i]);
-        c.y[i] = i_gather(chunk->y, c.number[i]);
-        code |= i_gather(scratch->code, c.number[i]);
+        fetch_4(chunk->vertex, c.number[i] * (int32_t)chunk->stride, vertex);
+        c.x[i] = u_as_i(vertex[2]), c.y[i] = u_as_i(vertex[3]);
     }
-    maskx simple = (code == 0) & is_small(c.x[0], c.x[1]) & is_small(c.x[1], c.x[2]) & is_small(c.x[2], c.x[0]) &
-                   is_small(c.y[0], c.y[1]) & is_small(c.y[1], c.y[2]) & is_small(c.y[2], c.y[0]);
+    maskx simple = (i_max(i_max(c.x[0], c.x[1]), c.x[2]) < RASTER_NOWHERE) & is_small(c.x[0], c.x[1]) &
+                   is_small(c.x[1], c.x[2]) & is_small(c.x[2], c.x[0]) & is_small(c.y[0], c.y[1]) &
+                   is_small(c.y[1], c.y[2]) & is_small(c.y[2], c.y[0]);
     i32x area = (c.x[1] - c.x[0]) * (c.y[2] - c.y[0]) - (c.x[2] - c.x[0]) * (c.y[1] - c.y[0]);
     maskx clockwise = area > 0; /* y points down */
     maskx front = draw->front_clockwise ? clockwise : ~clockwise;
@@ -84,22 +83,18 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
     maskx tiny = (x1 - x0 <= 1) & (y1 - y0 <= 1);
     if (pass->samples == 1 && m_any(kept & tiny))
         kept &= ~tiny | touches_a_centre(&c, x0, y0, x1, y1, i_sel(clockwise, i_set(1), i_set(-1)));
-    uint32_t word[6][AMB_LANES];
-    i32x primitive = i_load((const int32_t *)(const void *)(scratch->corner[3] + first));
-    const i32x value[6] = {c.number[0],
-                           i_sel(clockwise, c.number[1], c.number[2]),
-                           i_sel(clockwise, c.number[2], c.number[1]),
-                           primitive | i_sel(front, i_set(INT32_MIN), i_set(0)),
-                           x0 | (y0 << 16),
-                           x1 | (y1 << 16)};
-    for (int i = 0; i < 6; i++)
-        i_store((int32_t *)(void *)word[i], value[i]);
+    i32x primitive = i_load((const int32_t *)(const void *)(scratch->corner[3] + first)) - (int32_t)chunk->primitive;
+    i32x second = i_sel(clockwise, c.number[1], c.number[2]), third = i_sel(clockwise, c.number[2], c.number[1]);
+    float words[4][AMB_LANES];
+    transpose_words(f_from_bits(c.number[0] | (primitive << 16) | i_sel(front, i_set(INT32_MIN), i_set(0))),
+                    f_from_bits(second | (x1 << 16)), f_from_bits(third | (y1 << 16)), f_from_bits(x0 | (y0 << 16)),
+                    words);
     uint32_t kept_bits = m_bits(kept) & live, other = live & ~m_bits(simple);
     scratch->stats.triangles_culled += (uint64_t)__builtin_popcount(live & ~other & ~kept_bits);
     for (; other != 0; other &= other - 1) { /* in order: the simple ones before it, then the other */
         int lane = __builtin_ctz(other);
         uint32_t before = (1u << lane) - 1u;
-        append(chunk, kept_bits & before, word);
+        append(chunk, kept_bits & before, words);
         kept_bits &= ~before;
         raster_setup_one(pass, chunk, scratch, first + (uint32_t)lane);
         if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + AMB_LANES)) {
@@ -107,7 +102,7 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
             return;
         }
     }
-    append(chunk, kept_bits, word);
+    append(chunk, kept_bits, words);
 }
 
 void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)

@@ -4,6 +4,7 @@
 #define AMBIANCE_RASTER_VERTEX_H
 
 #include "raster/internal.h"
+#include "raster/records.h"
 
 static inline i32x clip_code(v4x clip, f32x guard_x, f32x guard_y, bool depth_clamp)
 {
@@ -26,43 +27,12 @@ static inline i32x snap(f32x ndc, f32x scale, f32x offset)
     return f_to_i(f_round((ndc * scale + offset) * (float)RASTER_SUBPIXEL));
 }
 
-/* Lanes a, b, c, d (0…3 of v, 4…7 of w) of every four lanes. */
-#define PICK(lane, four) ((lane) < 4 ? (lane) + 4 * (four) : (lane)-4 + AMB_LANES + 4 * (four))
-#define PICKS(four, a, b, c, d) PICK(a, four), PICK(b, four), PICK(c, four), PICK(d, four)
-#if AMB_LANES == 4
-#define SHUFFLE(v, w, a, b, c, d) __builtin_shufflevector(v, w, PICKS(0, a, b, c, d))
-#elif AMB_LANES == 8
-#define SHUFFLE(v, w, a, b, c, d) __builtin_shufflevector(v, w, PICKS(0, a, b, c, d), PICKS(1, a, b, c, d))
-#else
-#define SHUFFLE(v, w, a, b, c, d)                                                                   \
-    __builtin_shufflevector(v, w, PICKS(0, a, b, c, d), PICKS(1, a, b, c, d), PICKS(2, a, b, c, d), \
-                            PICKS(3, a, b, c, d))
-#endif
-
-/* Lane by lane, four words to a record: `stride` words on is the next lane's. */
-static inline void store_words(uint32_t *record, uint32_t stride, f32x a, f32x b, f32x c, f32x d)
-{
-    f32x ab = SHUFFLE(a, b, 0, 4, 1, 5), cd = SHUFFLE(c, d, 0, 4, 1, 5);
-    f32x ab2 = SHUFFLE(a, b, 2, 6, 3, 7), cd2 = SHUFFLE(c, d, 2, 6, 3, 7);
-    float words[4][AMB_LANES]; /* of lanes 0, 4, …; of 1, 5, …; and so on */
-    f_store(words[0], SHUFFLE(ab, cd, 0, 1, 4, 5));
-    f_store(words[1], SHUFFLE(ab, cd, 2, 3, 6, 7));
-    f_store(words[2], SHUFFLE(ab2, cd2, 0, 1, 4, 5));
-    f_store(words[3], SHUFFLE(ab2, cd2, 2, 3, 6, 7));
-    for (uint32_t lane = 0; lane < AMB_LANES; lane++)
-        memcpy(record + (size_t)lane * stride, &words[lane & 3][lane & ~3u], 4 * sizeof *record);
-}
-#undef SHUFFLE
-#undef PICKS
-#undef PICK
-
 /* Depth, 1/w, window position and varyings go to one record a vertex; its padding gets what follows in `group`. */
-static inline void write_records(raster_chunk *chunk, uint32_t first, v4x clip, const float *group)
+static inline void write_records(raster_chunk *chunk, uint32_t first, v4x clip, i32x x, i32x y, const float *group)
 {
     const uint32_t floats = (uint32_t)chunk->draw->state.varying_floats, stride = chunk->stride;
     uint32_t *record = chunk->vertex + (size_t)first * stride;
-    store_words(record, stride, clip.z / clip.w, 1.0f / clip.w, f_from_bits(i_load(chunk->x + first)),
-                f_from_bits(i_load(chunk->y + first)));
+    store_words(record, stride, clip.z / clip.w, 1.0f / clip.w, f_from_bits(x), f_from_bits(y));
     for (uint32_t k = 0; k < floats; k += 4, group += 4 * AMB_LANES)
         store_words(record + RASTER_VERTEX_WORDS + k, stride, f_load(group), f_load(group + AMB_LANES),
                     f_load(group + 2 * AMB_LANES), f_load(group + 3 * AMB_LANES));
@@ -79,9 +49,8 @@ static inline void window_vertices(const amb_pass *pass, raster_chunk *chunk, ra
     f_store(scratch->clip_w + first, clip.w);
     i32x code = clip_code(clip, f_set(pass->guard_x), f_set(pass->guard_y), chunk->draw->state.depth_clamp);
     i_store(scratch->code + first, code);
-    i_store(chunk->x + first, snap(clip.x / clip.w, half_w, half_w));
-    i_store(chunk->y + first, snap(clip.y / clip.w, -half_h, half_h));
-    write_records(chunk, first, clip, group);
+    i32x x = snap(clip.x / clip.w, half_w, half_w), y = snap(clip.y / clip.w, -half_h, half_h);
+    write_records(chunk, first, clip, i_sel(code == 0, x, i_set(RASTER_NOWHERE)), y, group);
 }
 
 /* The floats of a vertex on its way to a geometry shader: clip position, varyings. */
