@@ -8,7 +8,7 @@
 #define AMBIANCE_RASTER_FRAGMENT_H
 
 #include "raster/clock.h"
-#include "raster/output.h"
+#include "raster/samples.h"
 
 /* What shading needs of a triangle; rebuilt per tile, the same numbers in each, and only when a block is covered. */
 typedef struct raster_shading {
@@ -76,15 +76,6 @@ static inline void prepare_shading(raster_shading *s)
     s->prepared = true;
 }
 
-/* Tests must wait for the shader when it makes the depth, and when a failed test would change the stencil of a fragment
- * that the shader may still discard. */
-static inline bool tests_late(const amb_draw *draw)
-{
-    const amb_stencil *s = &draw->stencil;
-    return draw->writes_depth ||
-           (s->on && (s->front.fail | s->front.depth_fail | s->back.fail | s->back.depth_fail) != AMB_STENCIL_KEEP);
-}
-
 static inline void run_shader(const raster_tile *tile, const amb_draw *draw, const amb_fs_in *in, amb_fs_out *out)
 {
     out->depth = in->depth;
@@ -105,21 +96,9 @@ static inline void run_shader(const raster_tile *tile, const amb_draw *draw, con
     tile->stats->fragments_shaded += (uint64_t)__builtin_popcount(m_bits(in->live));
 }
 
-/* What follows the shader, on one sample of the live lanes. base: its first plane. */
-static inline void write_fragments(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
-                                   maskx front, f32x depth, const amb_fs_out *out, maskx live, bool late, bool packed)
-{
-    if (late || draw->stencil.on)
-        live = update_depth_stencil(tile, draw, at, base, front, depth, live, packed);
-    else if (!draw->depth_write_off)
-        store_plane(at, base, depth, live, packed);
-    if (m_any(live))
-        store_colors(tile, draw, at, base, out, live, packed);
-}
-
 /* Runs the fragment shader and everything after it on the lanes of in->live. */
 static inline void shade_group(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
-                               bool late, bool packed)
+                               bool late, raster_layout how)
 {
     amb_fs_out out;
     run_shader(tile, draw, in, &out);
@@ -128,58 +107,19 @@ static inline void shade_group(const raster_tile *tile, const amb_draw *draw, co
     const uint64_t start = raster_start(timed);
     if (draw->alpha_to_coverage)
         live &= out.color[0].w >= 0.5f;
-    write_fragments(tile, draw, at, 0, in->front, out.depth, &out, live, late, packed);
+    write_fragments(tile, draw, at, in->front, out.depth, &out, live, late, how);
     raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
 }
 
-/* ---- samples: a lane's have a bit each ----------------------------------------------------------------------------
- */
-
-static inline int32_t all_samples(const raster_tile *tile) { return (1 << tile->pass->samples) - 1; }
-static inline maskx sample_lanes(i32x samples, int sample) { return (samples & i_set(1 << sample)) != 0; }
-
-/* The samples of which ⌊n·alpha + ½⌋ is above `sample`. */
-static inline maskx alpha_covers(f32x alpha, int samples, int sample)
+/* The same where pixels have samples: those of at->mask. depth: of each, quad by quad. */
+static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, raster_pixels *at, amb_fs_in *in,
+                                 const f32x *depth)
 {
-    return f_floor(f_saturate(alpha) * (float)samples + 0.5f) > (float)sample;
-}
-
-/* Those of the samples that pass the early tests. */
-static inline i32x samples_passing(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
-                                   i32x samples, const f32x depth[RASTER_MAX_SAMPLES], bool packed)
-{
-    i32x passed = i_set(0);
-    for (int i = 0; i < tile->pass->samples; i++)
-        passed |= output_tests(tile, draw, at, i * tile->pass->planes, front, depth[i], packed) & i_set(1 << i);
-    return samples & passed;
-}
-
-/* Tests the samples and writes their depth and stencil, without a shader. */
-static inline void update_samples(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
-                                  i32x samples, const f32x depth[RASTER_MAX_SAMPLES], bool packed)
-{
-    for (int i = 0; i < tile->pass->samples; i++)
-        update_depth_stencil(tile, draw, at, i * tile->pass->planes, front, depth[i], sample_lanes(samples, i), packed);
-}
-
-/* shade_group where pixels have samples: live are those that are covered and have passed the early tests. */
-static inline void shade_samples(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, amb_fs_in *in,
-                                 i32x live, const f32x depth[RASTER_MAX_SAMPLES], bool packed)
-{
-    const int samples = tile->pass->samples;
-    const bool late = tests_late(draw);
     amb_fs_out out;
     run_shader(tile, draw, in, &out);
     const bool timed = tile->pass->target.time_stages;
     const uint64_t start = raster_start(timed);
-    for (int i = 0; i < samples; i++) {
-        maskx written = sample_lanes(live, i) & out.live;
-        if (draw->alpha_to_coverage)
-            written &= alpha_covers(out.color[0].w, samples, i);
-        if (m_any(written))
-            write_fragments(tile, draw, at, i * tile->pass->planes, in->front,
-                            draw->writes_depth ? out.depth : depth[i], &out, written, late, packed);
-    }
+    write_samples(tile, draw, at, in->front, &out, depth);
     raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
 }
 
@@ -189,10 +129,10 @@ static inline maskx live_lanes(const raster_tile *tile, const amb_draw *draw, co
 {
     if (!draw->fragment) {
         if (m_any(covered))
-            update_depth_stencil(tile, draw, at, 0, front, depth, covered, false);
+            update_depth_stencil(tile, draw, at, front, depth, covered, RASTER_BLOCK);
         return m_set(false);
     }
-    return late ? covered : covered & output_tests(tile, draw, at, 0, front, depth, false);
+    return late ? covered : covered & output_tests(tile, draw, at, front, depth, RASTER_BLOCK);
 }
 
 /* Window coordinates of pixels packed as x | y << 16. */
@@ -224,8 +164,7 @@ typedef struct raster_quads {
     const float *varying[3][RASTER_QUADS]; /* of its three vertices */
     f32x p[3], depth;                      /* perspective weights before division */
     i32x position, primitive_front;
-    i32x samples; /* only where pixels have several: those that are live, a bit each, and the depth of each */
-    f32x sample_depth[RASTER_MAX_SAMPLES];
+    f32x sample_depth[RASTER_QUADS * RASTER_SAMPLE_GROUPS]; /* where pixels have samples: quad by quad, closely */
 } raster_quads;
 
 typedef struct raster_queue {
@@ -233,8 +172,66 @@ typedef struct raster_queue {
     int count;     /* quads waiting, below RASTER_QUADS */
     uint32_t live; /* bits of their lanes */
     raster_quads quads;
-    uint8_t waiting[RASTER_MAX_TILE * RASTER_MAX_TILE / 4]; /* by quad of the tile: bits of the pixels that wait */
+    union {                                                     /* by quad of the tile */
+        uint8_t waiting[RASTER_MAX_TILE * RASTER_MAX_TILE / 4]; /* bits of the pixels that wait */
+        uint32_t waiting_samples[RASTER_MAX_TILE * RASTER_MAX_TILE / 4];
+    };
 } raster_queue;
+
+/* Lane `component` of every quad, to all lanes of the quad. */
+#if AMB_LANES == 16
+#define QUAD_SPLAT(a, component) ((f32x)_mm512_permute_ps((__m512)(a), 0x55 * (component)))
+#elif AMB_LANES == 8
+#define QUAD_SPLAT(a, component) ((f32x)_mm256_permute_ps((__m256)(a), 0x55 * (component)))
+#else
+#define QUAD_SPLAT(a, component) AMB_QUAD_(a, component, component, component, component)
+#endif
+
+/* The varyings of quads of different triangles. Records are padded, so that four floats can always be read. */
+static inline void interpolate_quads(const raster_quads *q, int floats, f32x b1, f32x b2, f32x *varying)
+{
+    for (int i = 0; i < floats; i += 4) {
+        f32x base = load_quads(q->varying[0], (size_t)i);
+        f32x delta1 = load_quads(q->varying[1], (size_t)i) - base;
+        f32x delta2 = load_quads(q->varying[2], (size_t)i) - base;
+#define COMPONENT(k) varying[i + k] = (QUAD_SPLAT(base, k) + QUAD_SPLAT(delta1, k) * b1) + QUAD_SPLAT(delta2, k) * b2
+        COMPONENT(0);
+        COMPONENT(1);
+        COMPONENT(2);
+        COMPONENT(3);
+#undef COMPONENT
+    }
+}
+
+/* The quads of a block of one triangle, but where they lie. e: the edge functions. */
+static inline void block_quads(raster_quads *q, const raster_shading *s, const f32x e[3], f32x depth, i32x position)
+{
+    for (int i = 0; i < 3; i++)
+        q->p[i] = e[i] * s->inverse_w[i];
+    q->depth = depth;
+    q->position = position;
+    q->primitive_front = i_set((int32_t)s->primitive_front);
+    for (int i = 0; i < RASTER_QUADS; i++)
+        for (int k = 0; k < 3; k++)
+            q->varying[k][i] = s->vertex[k]->varying;
+}
+static __attribute__((noinline)) void shade_quads(const raster_tile *tile, const amb_draw *draw, raster_quads *q,
+                                                  uint32_t live)
+{
+    f32x varying[AMB_MAX_VARYINGS + 4];
+    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = q->depth};
+    in.live = m_from_bits(live);
+    in.front = q->primitive_front < 0;
+    in.primitive = q->primitive_front & INT32_MAX;
+    in.thread = tile->thread;
+    set_position(&in, q->position);
+    f32x scale = 1.0f / ((q->p[0] + q->p[1]) + q->p[2]);
+    interpolate_quads(q, draw->varying_floats, q->p[1] * scale, q->p[2] * scale, varying);
+    if (tile->pass->samples > 1)
+        shade_samples(tile, draw, &q->at, &in, q->sample_depth);
+    else
+        shade_group(tile, draw, &q->at, &in, tests_late(draw), RASTER_PACKED);
+}
 
 #if AMB_LANES > 4
 static inline f32x permute(f32x a, i32x index)
@@ -259,47 +256,6 @@ static inline i32x i_compress(i32x a, maskx kept)
 #endif
 }
 
-/* Lane `component` of every quad, to all lanes of the quad. */
-#if AMB_LANES == 16
-#define QUAD_SPLAT(a, component) ((f32x)_mm512_permute_ps((__m512)(a), 0x55 * (component)))
-#else
-#define QUAD_SPLAT(a, component) ((f32x)_mm256_permute_ps((__m256)(a), 0x55 * (component)))
-#endif
-
-/* The varyings of quads of different triangles. Records are padded, so that four floats can always be read. */
-static inline void interpolate_quads(const raster_quads *q, int floats, f32x b1, f32x b2, f32x *varying)
-{
-    for (int i = 0; i < floats; i += 4) {
-        f32x base = load_quads(q->varying[0], (size_t)i);
-        f32x delta1 = load_quads(q->varying[1], (size_t)i) - base;
-        f32x delta2 = load_quads(q->varying[2], (size_t)i) - base;
-#define COMPONENT(k) varying[i + k] = (QUAD_SPLAT(base, k) + QUAD_SPLAT(delta1, k) * b1) + QUAD_SPLAT(delta2, k) * b2
-        COMPONENT(0);
-        COMPONENT(1);
-        COMPONENT(2);
-        COMPONENT(3);
-#undef COMPONENT
-    }
-}
-
-static __attribute__((noinline)) void shade_quads(const raster_tile *tile, const amb_draw *draw, const raster_quads *q,
-                                                  uint32_t live)
-{
-    f32x varying[AMB_MAX_VARYINGS + 4];
-    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = q->depth};
-    in.live = m_from_bits(live);
-    in.front = q->primitive_front < 0;
-    in.primitive = q->primitive_front & INT32_MAX;
-    in.thread = tile->thread;
-    set_position(&in, q->position);
-    f32x scale = 1.0f / ((q->p[0] + q->p[1]) + q->p[2]);
-    interpolate_quads(q, draw->varying_floats, q->p[1] * scale, q->p[2] * scale, varying);
-    if (tile->pass->samples > 1)
-        shade_samples(tile, draw, &q->at, &in, q->samples, q->sample_depth, true);
-    else
-        shade_group(tile, draw, &q->at, &in, tests_late(draw), true);
-}
-
 /* Shades the waiting quads. */
 static __attribute__((noinline)) void flush_queue(const raster_tile *tile, raster_queue *queue)
 {
@@ -307,9 +263,13 @@ static __attribute__((noinline)) void flush_queue(const raster_tile *tile, raste
         return;
     raster_quads *q = &queue->quads;
     for (int i = 0; i < queue->count; i++)
-        queue->waiting[q->index[i]] = 0;
+        if (tile->pass->samples > 1)
+            queue->waiting_samples[q->index[i]] = 0;
+        else
+            queue->waiting[q->index[i]] = 0;
     for (int i = queue->count; i < RASTER_QUADS; i++) { /* dead lanes: any valid memory */
         q->at.quad[i] = tile->spare;
+        q->at.mask[i] = 0;
         for (int k = 0; k < 3; k++)
             q->varying[k][i] = q->varying[k][0];
     }
@@ -328,6 +288,19 @@ static inline void flush_overlap(const raster_tile *tile, raster_queue *queue, u
         flush_queue(tile, queue);
 }
 
+/* What belongs to a quad's samples. */
+static inline void queue_samples(const raster_tile *tile, raster_queue *queue, const raster_quads *from, int quad,
+                                 int slot)
+{
+    raster_quads *to = &queue->quads;
+    const int groups = tile->sample_groups;
+    to->at.stride = from->at.stride;
+    to->at.mask[slot] = from->at.mask[quad];
+    queue->waiting_samples[from->index[quad]] |= from->at.mask[quad];
+    for (int g = 0; g < groups; g++)
+        to->sample_depth[slot * groups + g] = from->sample_depth[quad * groups + g];
+}
+
 /* Puts those of the quads that have a live lane into the queue. None of their live pixels waits already. */
 static inline void queue_quads(const raster_tile *tile, raster_queue *queue, const raster_quads *from, uint32_t live)
 {
@@ -344,16 +317,14 @@ static inline void queue_quads(const raster_tile *tile, raster_queue *queue, con
         to->depth = f_sel(taken, permute(from->depth, index), to->depth);
         to->position = i_sel(taken, permute_i(from->position, index), to->position);
         to->primitive_front = i_sel(taken, permute_i(from->primitive_front, index), to->primitive_front);
-        if (tile->pass->samples > 1) {
-            to->samples = i_sel(taken, permute_i(from->samples, index), to->samples);
-            for (int i = 0; i < tile->pass->samples; i++)
-                to->sample_depth[i] = f_sel(taken, permute(from->sample_depth[i], index), to->sample_depth[i]);
-        }
         for (; wanted != 0 && queue->count < RASTER_QUADS; wanted &= wanted - 1) {
             int quad = __builtin_ctz(wanted), slot = queue->count++;
             uint32_t pixels = live >> 4 * quad & 15u;
             queue->live |= pixels << 4 * slot;
-            queue->waiting[from->index[quad]] |= (uint8_t)pixels;
+            if (tile->pass->samples > 1)
+                queue_samples(tile, queue, from, quad, slot);
+            else
+                queue->waiting[from->index[quad]] |= (uint8_t)pixels;
             to->index[slot] = from->index[quad];
             to->at.quad[slot] = from->at.quad[quad];
             for (int k = 0; k < 3; k++)
@@ -364,21 +335,6 @@ static inline void queue_quads(const raster_tile *tile, raster_queue *queue, con
     }
 }
 
-/* The quads of a block of one triangle; what belongs to samples is not filled in. */
-static inline void block_quads(raster_quads *q, const raster_shading *s, float *block, uint32_t first_quad,
-                               const f32x p[3], f32x depth, i32x position)
-{
-    q->p[0] = p[0], q->p[1] = p[1], q->p[2] = p[2];
-    q->depth = depth;
-    q->position = position;
-    q->primitive_front = i_set((int32_t)s->primitive_front);
-    for (uint32_t i = 0; i < RASTER_QUADS; i++) {
-        q->at.quad[i] = block + 4 * i;
-        q->index[i] = (uint16_t)(first_quad + i);
-        for (int k = 0; k < 3; k++)
-            q->varying[k][i] = s->vertex[k]->varying;
-    }
-}
 #else
 static inline void flush_queue(const raster_tile *tile, raster_queue *queue) { (void)tile, (void)queue; }
 #endif
@@ -415,49 +371,44 @@ static inline f32x depth_at(const raster_shading *s, const f32x e[3])
     return f_saturate(((s->z0 + s->dz1 * (e[1] * s->inverse_area)) + s->dz2 * (e[2] * s->inverse_area)) + s->bias);
 }
 
-/* A block of which samples are covered. e: the edge functions at the pixels' centres. */
+/* A block of which the samples in q->at.mask are covered, of depth q->sample_depth. e: the edge functions at the
+ * pixels' centres. */
 static inline void fragment_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, int bx, int by,
-                                    i32x samples, const f32x sample_depth[RASTER_MAX_SAMPLES], const f32x e[3])
+                                    raster_quads *q, const f32x e[3])
 {
     const amb_draw *draw = s->draw;
-    const raster_pixels at = {{block_at(tile, bx, by)}};
     const maskx front = m_set(s->primitive_front >> 31 != 0);
-    samples &= inside_clip(tile, bx, by);
+    const uint32_t first_quad = (uint32_t)(by * tile->blocks_x + bx) * RASTER_QUADS;
+    block_samples(tile, bx, by, &q->at);
+    keep_pixels(&q->at, m_bits(inside_clip(tile, bx, by)));
     if (!draw->fragment) {
-        update_samples(tile, draw, &at, front, samples, sample_depth, false);
+        update_samples(tile, draw, &q->at, front, q->sample_depth);
         return;
     }
 #if AMB_LANES > 4
-    const uint32_t first_quad = (uint32_t)(by * tile->blocks_x + bx) * RASTER_QUADS;
-    flush_overlap(tile, queue, first_quad, m_bits(samples != 0));
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < RASTER_QUADS; i++) {
+        q->index[i] = (uint16_t)(first_quad + i);
+        met |= queue->waiting_samples[first_quad + i] & q->at.mask[i];
+    }
+    if (met != 0)
+        flush_queue(tile, queue);
 #else
-    (void)queue;
+    (void)queue, (void)first_quad;
 #endif
     if (!tests_late(draw))
-        samples = samples_passing(tile, draw, &at, front, samples, sample_depth, false);
-    const maskx live = samples != 0;
-    const uint32_t bits = m_bits(live);
-    if (bits == 0)
+        test_samples(tile, draw, &q->at, front, q->sample_depth);
+    const uint32_t live = pixels_of_samples(&q->at);
+    if (live == 0)
         return;
-    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]}, depth = depth_at(s, e);
+    block_quads(q, s, e, depth_at(s, e), block_position(tile, bx, by));
 #if AMB_LANES > 4
-    if (!all_quads_live(bits)) {
-        raster_quads q;
-        block_quads(&q, s, at.quad[0], first_quad, p, depth, block_position(tile, bx, by));
-        q.samples = samples;
-        for (int i = 0; i < tile->pass->samples; i++)
-            q.sample_depth[i] = sample_depth[i];
-        queue_quads(tile, queue, &q, bits);
+    if (!all_quads_live(live)) {
+        queue_quads(tile, queue, q, live);
         return;
     }
 #endif
-    f32x varying[AMB_MAX_VARYINGS + 1];
-    amb_fs_in in = {.uniforms = draw->uniforms, .varyings = varying, .depth = depth, .live = live, .front = front};
-    in.thread = tile->thread;
-    in.primitive = i_set((int32_t)(s->primitive_front & 0x7fffffffu));
-    set_position(&in, block_position(tile, bx, by));
-    interpolate_block(s, p, varying);
-    shade_samples(tile, draw, &at, &in, samples, sample_depth, false);
+    shade_quads(tile, draw, q, live);
 }
 
 /* A covered block of a triangle. e: the three edge functions at the lanes' pixel centres, in units of 1/256 of the
@@ -467,14 +418,14 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
                                      maskx cover, const f32x e[3])
 {
     const amb_draw *draw = s->draw;
-    const raster_pixels at = {{block_at(tile, bx, by)}};
+    const raster_pixels at = {.quad = {block_at(tile, bx, by)}};
     if (!s->prepared)
         prepare_shading(s);
     if (tile->pass->samples > 1) { /* a line or a point: all samples of its pixels */
-        f32x depths[RASTER_MAX_SAMPLES];
-        for (int i = 0; i < tile->pass->samples; i++)
-            depths[i] = depth_at(s, e);
-        fragment_samples(tile, s, queue, bx, by, cover & all_samples(tile), depths, e);
+        raster_quads q;
+        spread_depth(tile, depth_at(s, e), q.sample_depth);
+        take_pixels(tile, &q.at, m_bits(cover));
+        fragment_samples(tile, s, queue, bx, by, &q, e);
         return;
     }
     maskx covered = cover & inside_clip(tile, bx, by), front = m_set(s->primitive_front >> 31 != 0);
@@ -490,11 +441,14 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     uint32_t bits = m_bits(live);
     if (bits == 0)
         return;
-    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
 #if AMB_LANES > 4
     if (!all_quads_live(bits)) {
         raster_quads q;
-        block_quads(&q, s, at.quad[0], first_quad, p, depth, block_position(tile, bx, by));
+        block_quads(&q, s, e, depth, block_position(tile, bx, by));
+        for (uint32_t i = 0; i < RASTER_QUADS; i++) {
+            q.at.quad[i] = at.quad[0] + 4 * i;
+            q.index[i] = (uint16_t)(first_quad + i);
+        }
         queue_quads(tile, queue, &q, bits);
         return;
     }
@@ -504,34 +458,35 @@ static inline void fragment_triangle(const raster_tile *tile, raster_shading *s,
     set_position(&in, block_position(tile, bx, by));
     f32x varying[AMB_MAX_VARYINGS + 1];
     in.varyings = varying;
+    const f32x p[3] = {e[0] * s->inverse_w[0], e[1] * s->inverse_w[1], e[2] * s->inverse_w[2]};
     interpolate_block(s, p, varying);
-    shade_group(tile, draw, &at, &in, late, false);
+    shade_group(tile, draw, &at, &in, late, RASTER_BLOCK);
 }
 
 /* A block of a full-screen draw. */
 static inline void fragment_screen(const raster_tile *tile, const amb_draw *draw, int bx, int by)
 {
-    const raster_pixels at = {{block_at(tile, bx, by)}};
+    raster_pixels at = {.quad = {block_at(tile, bx, by)}};
     const bool late = tests_late(draw);
     amb_fs_in in = {.uniforms = draw->uniforms, .depth = f_set(1.0f), .front = m_set(true), .thread = tile->thread};
     if (tile->pass->samples > 1) {
-        f32x depth[RASTER_MAX_SAMPLES];
-        for (int i = 0; i < tile->pass->samples; i++)
-            depth[i] = in.depth;
-        i32x live = inside_clip(tile, bx, by) & all_samples(tile);
+        f32x depth[RASTER_QUADS * RASTER_SAMPLE_GROUPS];
+        spread_depth(tile, in.depth, depth);
+        block_samples(tile, bx, by, &at);
+        take_pixels(tile, &at, m_bits(inside_clip(tile, bx, by)));
         if (!late)
-            live = samples_passing(tile, draw, &at, in.front, live, depth, false);
-        in.live = live != 0;
+            test_samples(tile, draw, &at, in.front, depth);
+        in.live = m_from_bits(pixels_of_samples(&at));
         set_position(&in, block_position(tile, bx, by));
         if (m_any(in.live))
-            shade_samples(tile, draw, &at, &in, live, depth, false);
+            shade_samples(tile, draw, &at, &in, depth);
         return;
     }
     in.live = live_lanes(tile, draw, &at, inside_clip(tile, bx, by), in.depth, in.front, late);
     if (!m_any(in.live))
         return;
     set_position(&in, block_position(tile, bx, by));
-    shade_group(tile, draw, &at, &in, late, false);
+    shade_group(tile, draw, &at, &in, late, RASTER_BLOCK);
 }
 
 #endif

@@ -1,5 +1,6 @@
-/* Which samples of a tile a triangle covers: exactly the fill rule of coverage.h, at every sample's own position. Part
- * of tile_wide.c. */
+/* Which samples of a tile a triangle covers: exactly the fill rule of coverage.h, at every sample's own position. Quad
+ * by quad, a lane a sample: the edge functions of a quad's first pixel plus what is the same for all quads of a
+ * triangle. Part of tile_wide.c. */
 #ifndef AMBIANCE_RASTER_MULTISAMPLE_H
 #define AMBIANCE_RASTER_MULTISAMPLE_H
 
@@ -14,192 +15,343 @@ static const int8_t *sample_positions(int samples)
     return samples == 2 ? two : samples == 4 ? four : eight;
 }
 
-typedef struct sample_edges {
-    raster_edge e[RASTER_MAX_SAMPLES + 1][3]; /* of each sample; last the pixel's centre */
-} sample_edges;
-
-/* One edge function, its origin moved by (dx, dy) sixteenths of a pixel. value: at the box's first pixel's centre. */
-static raster_edge moved_edge(int64_t value, int32_t a, int32_t b, int dx, int dy)
-{
-    value += (int64_t)a * (dx * (RASTER_SUBPIXEL / 16)) + (int64_t)b * (dy * (RASTER_SUBPIXEL / 16));
-    bool top_left = a > 0 || (a == 0 && b > 0);
-    int32_t fraction = (int32_t)(value & 255);
-    int32_t excluded = !top_left && fraction == 0;
-    return (raster_edge){(value >> 8) - excluded, a, b, (float)excluded + (float)fraction * (1.0f / 256.0f)};
-}
-
-/* Values of an edge's function over a block, as floats, and where they are inside. */
-static inline maskx edge_over_block(const raster_edge *e, int x, int y, bool fits, f32x *weight)
-{
-    if (fits) {
-        i32x k = ((int32_t)e->c + e->a * x + e->b * y) + (i_block_x() * e->a + i_block_y() * e->b);
-        *weight = i_to_f(k) + e->bias;
-        return k >= 0;
-    }
-    float value[AMB_LANES];
-    uint32_t inside = 0;
-    int64_t k = e->c + (int64_t)e->a * x + (int64_t)e->b * y;
-    for (int lane = 0; lane < AMB_LANES; lane++) {
-        int64_t v = k + (int64_t)e->a * i_lane(i_block_x(), lane) + (int64_t)e->b * i_lane(i_block_y(), lane);
-        inside |= (uint32_t)(v >= 0) << lane;
-        value[lane] = (float)((double)v + (double)e->bias);
-    }
-    *weight = f_load(value);
-    return m_from_bits(inside);
-}
-
-static void cover_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, const sample_edges *edges,
-                          raster_box box, int bx, int by, bool fits)
-{
-    const int samples = tile->pass->samples;
-    int x = (bx - box.x0) * AMB_BLOCK_W, y = (by - box.y0) * AMB_BLOCK_H;
-    i32x covered = i_set(0);
-    f32x weight[3], depth[RASTER_MAX_SAMPLES];
-    if (!s->prepared)
-        prepare_shading(s);
-    for (int i = 0; i < samples; i++) {
-        maskx cover = m_set(true);
-        for (int k = 0; k < 3; k++)
-            cover &= edge_over_block(&edges->e[i][k], x, y, fits, &weight[k]);
-        depth[i] = depth_at(s, weight);
-        covered |= cover & i_set(1 << i);
-    }
-    if (!m_any(covered != 0))
-        return;
-    for (int k = 0; k < 3; k++)
-        edge_over_block(&edges->e[samples][k], x, y, fits, &weight[k]);
-    fragment_samples(tile, s, queue, bx, by, covered, depth, weight);
-}
-
-static void play_multisample(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low,
-                             uint32_t high)
+static void set_samples(raster_tile *tile)
 {
     const int samples = tile->pass->samples;
     const int8_t *position = sample_positions(samples);
-    raster_box box = box_in_tile(tile, low, high);
-    if (box.x0 > box.x1)
+    tile->sample_groups = samples > RASTER_QUADS ? samples / RASTER_QUADS : 1;
+    tile->all_samples = (uint32_t)((1ull << 4 * samples) - 1u);
+    for (int g = 0; g < tile->sample_groups; g++) {
+        int32_t x[AMB_LANES], y[AMB_LANES];
+        for (int lane = 0; lane < AMB_LANES; lane++) {
+            int n = (g * RASTER_QUADS + lane / 4) % samples;
+            x[lane] = position[2 * n] * (RASTER_SUBPIXEL / 16), y[lane] = position[2 * n + 1] * (RASTER_SUBPIXEL / 16);
+        }
+        tile->sample_x[g] = i_load(x), tile->sample_y[g] = i_load(y);
+    }
+}
+
+/* An edge function, exact: 256·whole + fraction at some pixel's centre, changing by 256·a and 256·b a pixel. */
+typedef struct sample_edge {
+    int64_t whole;
+    int32_t fraction, a, b;
+} sample_edge;
+
+static inline bool owns_its_samples(int32_t a, int32_t b) { return a > 0 || (a == 0 && b > 0); }
+
+/* What the quads of a triangle have in common, where 32 bits are enough. As in raster_edge, a sample is inside where
+ * the integer is not negative, and bias makes it exact. */
+typedef struct sample_triangle {
+    i32x offset[3][RASTER_SAMPLE_GROUPS];
+    f32x bias[3][RASTER_SAMPLE_GROUPS];
+    float z0, dz1, dz2, inverse_area, depth_bias;
+} sample_triangle;
+
+static inline void set_sample_edge(const raster_tile *tile, sample_triangle *t, int i, int32_t a, int32_t b,
+                                   int32_t fraction)
+{
+    const i32x pixel = (i_lane_index() & 1) * a + (i_lane_index() >> 1 & 1) * b;
+    const i32x on_edge = i_set(owns_its_samples(a, b) ? 0 : 1);
+    for (int g = 0; g < tile->sample_groups; g++) {
+        i32x moved = (tile->sample_x[g] * a + tile->sample_y[g] * b) + fraction, rest = moved & 255;
+        i32x excluded = i_sel(rest == 0, on_edge, i_set(0));
+        t->offset[i][g] = pixel + (moved >> 8) - excluded;
+        t->bias[i][g] = i_to_f(excluded) + i_to_f(rest) * (1.0f / 256.0f);
+    }
+}
+
+static inline f32x sample_depths(const sample_triangle *t, f32x e1, f32x e2)
+{
+    return f_saturate(((t->z0 + t->dz1 * (e1 * t->inverse_area)) + t->dz2 * (e2 * t->inverse_area)) + t->depth_bias);
+}
+
+/* The samples of a quad that the triangle covers, and the depth of all of them. whole: at its first pixel. */
+static inline uint32_t cover_quad(const raster_tile *tile, const sample_triangle *t, const int32_t whole[3],
+                                  f32x *depth)
+{
+    uint32_t covered = 0;
+    for (int g = 0; g < tile->sample_groups; g++) {
+        i32x e = (t->offset[0][g] + whole[0]) | (t->offset[1][g] + whole[1]) | (t->offset[2][g] + whole[2]);
+        covered |= m_bits(e >= 0) << g * AMB_LANES;
+    }
+    covered &= tile->all_samples;
+    for (int g = 0; g < tile->sample_groups && covered != 0; g++)
+        depth[g] = sample_depths(t, i_to_f(t->offset[1][g] + whole[1]) + t->bias[1][g],
+                                 i_to_f(t->offset[2][g] + whole[2]) + t->bias[2][g]);
+    return covered;
+}
+
+/* How far inside the edge is a pixel's best sample, more or less? In pixels' steps. */
+static inline int64_t best_sample(const raster_tile *tile, const sample_edge *e)
+{
+    const int8_t *position = sample_positions(tile->pass->samples);
+    int64_t most = INT64_MIN;
+    for (int n = 0; n < tile->pass->samples; n++) {
+        int64_t moved = (int64_t)e->a * position[2 * n] + (int64_t)e->b * position[2 * n + 1];
+        most = moved > most ? moved : most;
+    }
+    return e->whole + ((e->fraction + most * (RASTER_SUBPIXEL / 16)) >> 8);
+}
+
+/* ---- block by block --------------------------------------------------------------------------------------------- */
+
+/* A triangle in a tile. */
+typedef struct sample_cover {
+    sample_edge edge[3]; /* from the box's first pixel */
+    raster_edge best[3]; /* of each pixel's best sample */
+    raster_box box;
+    bool fits; /* 32 bits */
+    sample_triangle triangle;
+} sample_cover;
+
+/* cover_quad where 32 bits are not enough. x, y: of the quad, from the box's first pixel. */
+static uint32_t cover_wide_quad(const raster_tile *tile, const sample_cover *c, int x, int y, f32x *depth)
+{
+    uint32_t covered = tile->all_samples;
+    for (int g = 0; g < tile->sample_groups; g++) {
+        float weight[3][AMB_LANES];
+        for (int i = 0; i < 3; i++)
+            for (int lane = 0; lane < AMB_LANES; lane++) {
+                const sample_edge *e = &c->edge[i];
+                int64_t value = e->fraction + (int64_t)e->a * i_lane(tile->sample_x[g], lane) +
+                                (int64_t)e->b * i_lane(tile->sample_y[g], lane);
+                int64_t whole =
+                    e->whole + (int64_t)e->a * (x + (lane & 1)) + (int64_t)e->b * (y + (lane >> 1 & 1)) + (value >> 8);
+                int32_t rest = (int32_t)(value & 255), excluded = rest == 0 && !owns_its_samples(e->a, e->b);
+                weight[i][lane] =
+                    (float)((double)(whole - excluded) + (double)((float)excluded + (float)rest * (1.0f / 256.0f)));
+                if (whole < excluded)
+                    covered &= ~(1u << (g * AMB_LANES + lane) % 32);
+            }
+        depth[g] = sample_depths(&c->triangle, f_load(weight[1]), f_load(weight[2]));
+    }
+    return covered;
+}
+
+/* An edge's function at the pixels' centres of a block, as a weight. x, y: the block's first pixel, from the box's. */
+static inline f32x edge_over_block(const sample_edge *e, int x, int y, bool fits)
+{
+    int32_t excluded = e->fraction == 0 && !owns_its_samples(e->a, e->b);
+    float bias = (float)excluded + (float)e->fraction * (1.0f / 256.0f);
+    int64_t k = e->whole - excluded + (int64_t)e->a * x + (int64_t)e->b * y;
+    if (fits)
+        return i_to_f((int32_t)k + (i_block_x() * e->a + i_block_y() * e->b)) + bias;
+    float value[AMB_LANES];
+    for (int lane = 0; lane < AMB_LANES; lane++)
+        value[lane] = (float)((double)(k + (int64_t)e->a * i_lane(i_block_x(), lane) +
+                                       (int64_t)e->b * i_lane(i_block_y(), lane)) +
+                              (double)bias);
+    return f_load(value);
+}
+
+static void cover_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, sample_cover *c, int bx,
+                          int by)
+{
+    sample_triangle *t = &c->triangle;
+    int x = (bx - c->box.x0) * AMB_BLOCK_W, y = (by - c->box.y0) * AMB_BLOCK_H;
+    raster_quads q;
+    uint32_t any = 0;
+    if (!s->prepared) {
+        prepare_shading(s);
+        t->z0 = s->z0, t->dz1 = s->dz1, t->dz2 = s->dz2, t->inverse_area = s->inverse_area, t->depth_bias = s->bias;
+    }
+    for (int k = 0; k < RASTER_QUADS; k++) {
+        int quad_x = x + 2 * (k & 1), quad_y = y + (k & 2);
+        f32x *depth = q.sample_depth + k * tile->sample_groups;
+        int32_t whole[3];
+        for (int i = 0; i < 3 && c->fits; i++)
+            whole[i] = (int32_t)c->edge[i].whole + c->edge[i].a * quad_x + c->edge[i].b * quad_y;
+        any |= q.at.mask[k] =
+            c->fits ? cover_quad(tile, t, whole, depth) : cover_wide_quad(tile, c, quad_x, quad_y, depth);
+    }
+    if (any == 0)
+        return;
+    f32x weight[3];
+    for (int i = 0; i < 3; i++)
+        weight[i] = edge_over_block(&c->edge[i], x, y, c->fits);
+    fragment_samples(tile, s, queue, bx, by, &q, weight);
+}
+
+/* A block's best corner is outside an edge: in 64 bits. */
+static inline bool block_outside(const raster_edge best[3], int x, int y)
+{
+    for (int i = 0; i < 3; i++) {
+        int64_t step_x = (int64_t)best[i].a * (AMB_BLOCK_W - 1), step_y = (int64_t)best[i].b * (AMB_BLOCK_H - 1);
+        if (best[i].c + (int64_t)best[i].a * x + (int64_t)best[i].b * y + (step_x > 0 ? step_x : 0) +
+                (step_y > 0 ? step_y : 0) <
+            0)
+            return true;
+    }
+    return false;
+}
+
+static void play_blocks(const raster_tile *tile, raster_shading *s, raster_queue *queue, sample_cover *c)
+{
+    const raster_box box = c->box;
+    for (int by = box.y0; by <= box.y1; by++)
+        for (int bx = box.x0; bx <= box.x1; bx += AMB_LANES) {
+            int last = box.x1 - bx < AMB_LANES - 1 ? box.x1 - bx : AMB_LANES - 1;
+            uint32_t touched = AMB_ALL_LANES, full;
+            if (c->fits)
+                test_row(c->best, box, bx, by, &touched, &full);
+            for (touched &= (uint32_t)((2ull << last) - 1u); touched != 0; touched &= touched - 1) {
+                int n = __builtin_ctz(touched);
+                if (c->fits || !block_outside(c->best, (bx + n - box.x0) * AMB_BLOCK_W, (by - box.y0) * AMB_BLOCK_H))
+                    cover_samples(tile, s, queue, c, bx + n, by);
+            }
+        }
+}
+
+/* A triangle of any size. */
+static void play_multisample(const raster_tile *tile, raster_shading *s, raster_queue *queue, uint32_t low,
+                             uint32_t high)
+{
+    sample_cover c = {.box = box_in_tile(tile, low, high)};
+    if (c.box.x0 > c.box.x1)
         return;
     int32_t x[3], y[3];
     window_corners(s, x, y);
-    int64_t px = ((int64_t)tile->x0 + box.x0 * AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
-    int64_t py = ((int64_t)tile->y0 + box.y0 * AMB_BLOCK_H) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
-    sample_edges edges;
+    int64_t px = ((int64_t)tile->x0 + c.box.x0 * AMB_BLOCK_W) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
+    int64_t py = ((int64_t)tile->y0 + c.box.y0 * AMB_BLOCK_H) * RASTER_SUBPIXEL + RASTER_SUBPIXEL / 2;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         int32_t a = y[j] - y[k], b = x[k] - x[j];
         int64_t value = a * (px - x[j]) + b * (py - y[j]);
-        for (int n = 0; n < samples; n++)
-            edges.e[n][i] = moved_edge(value, a, b, position[2 * n], position[2 * n + 1]);
-        edges.e[samples][i] = moved_edge(value, a, b, 0, 0);
+        c.edge[i] = (sample_edge){value >> 8, (int32_t)(value & 255), a, b};
+        c.best[i] = (raster_edge){.c = best_sample(tile, &c.edge[i]), .a = a, .b = b};
     }
     int64_t area = (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
     s->inverse_area = 256.0f / (float)area;
-    bool fits = fits_32_bits(x, y, edges.e[samples]);
-    for (int by = box.y0; by <= box.y1; by++)
-        for (int bx = box.x0; bx <= box.x1; bx++) {
-            bool outside = false;
-            for (int i = 0; i < 3; i++) { /* from the block's corner pixels, half a pixel farther out */
-                const raster_edge *e = &edges.e[samples][i];
-                int64_t wide = magnitude(e->a) * (AMB_BLOCK_W + 1) + magnitude(e->b) * (AMB_BLOCK_H + 1);
-                int64_t middle = 2 * (e->c + (int64_t)e->a * ((bx - box.x0) * AMB_BLOCK_W) +
-                                      (int64_t)e->b * ((by - box.y0) * AMB_BLOCK_H)) +
-                                 (int64_t)e->a * (AMB_BLOCK_W - 1) + (int64_t)e->b * (AMB_BLOCK_H - 1);
-                outside |= middle + wide + 2 < 0;
-            }
-            if (!outside)
-                cover_samples(tile, s, queue, &edges, box, bx, by, fits);
-        }
+    c.fits = fits_32_bits(x, y, c.best);
+    for (int i = 0; i < 3 && c.fits; i++)
+        set_sample_edge(tile, &c.triangle, i, c.edge[i].a, c.edge[i].b, c.edge[i].fraction);
+    play_blocks(tile, s, queue, &c);
 }
 
-/* ---- small triangles together, as small.h plays them --------------------------------------------------------------
- */
+/* ---- small triangles together, as small.h plays them ------------------------------------------------------------ */
 
 #if AMB_LANES > 4
 
-/* Edge functions in 1/256 of a pixel's step, their constants from the tile's first pixel: those may overflow, but near
- * the triangle nothing does. */
 typedef struct sample_group {
     small_group m;
-    u32x c[3];       /* less 1 where a sample on the edge belongs to the other side */
-    i32x on_edge[3]; /* that 1 */
-    i32x offset[RASTER_MAX_SAMPLES][3];
+    int32_t whole[3][AMB_LANES], a[3][AMB_LANES], b[3][AMB_LANES]; /* edges, from the tile's first pixel */
+    int32_t fraction[3][AMB_LANES];
+    float z0[AMB_LANES], dz1[AMB_LANES], dz2[AMB_LANES], inverse_area[AMB_LANES], depth_bias[AMB_LANES];
+    int32_t primitive_front[AMB_LANES];
+    /* The row being gathered: live quads, which may all wait. */
+    int count;
+    int32_t row[AMB_LANES];
+    raster_quads quads;
 } sample_group;
 
-/* Fills all but m. reach: edge functions as small_group's, of whichever sample of a pixel lies farthest inside. */
-static inline void gather_sample_edges(const raster_tile *tile, sample_group *g, i32x reach[3])
+/* Fills what depends on m. best: edges as m's, of whichever sample of a pixel lies farthest inside. */
+static inline void gather_sample_edges(const raster_tile *tile, sample_group *g, i32x best[3])
 {
     const int8_t *position = sample_positions(tile->pass->samples);
     const small_group *m = &g->m;
     for (int i = 0; i < 3; i++) {
         i32x a = m->a[i] * (RASTER_SUBPIXEL / 16), b = m->b[i] * (RASTER_SUBPIXEL / 16);
-        i32x most = g->offset[0][i] = a * position[0] + b * position[1];
-        for (int n = 1; n < tile->pass->samples; n++) {
-            g->offset[n][i] = a * position[2 * n] + b * position[2 * n + 1];
-            most = i_max(most, g->offset[n][i]);
-        }
-        i32x fraction = f_to_i(m->bias[i] * 256.0f); /* 256 where the fill rule is in c */
-        reach[i] = m->c[i] + ((fraction + most) >> 8);
-        g->on_edge[i] = i_sel((a > 0) | ((a == 0) & (b > 0)), i_set(0), i_set(1));
-        g->c[i] = i_as_u(m->c[i]) * RASTER_SUBPIXEL + i_as_u(fraction - g->on_edge[i]);
+        i32x most = a * position[0] + b * position[1];
+        for (int n = 1; n < tile->pass->samples; n++)
+            most = i_max(most, a * position[2 * n] + b * position[2 * n + 1]);
+        i32x fraction = f_to_i(m->bias[i] * 256.0f); /* 256: a pixel on the edge that c leaves out */
+        i32x whole = m->c[i] + (fraction >> 8);
+        best[i] = whole + (((fraction & 255) + most) >> 8);
+        i_store(g->whole[i], whole), i_store(g->fraction[i], fraction & 255);
+        i_store(g->a[i], m->a[i]), i_store(g->b[i], m->b[i]);
     }
+    f_store(g->z0, m->z0), f_store(g->dz1, m->dz1), f_store(g->dz2, m->dz2);
+    f_store(g->inverse_area, m->inverse_area), f_store(g->depth_bias, m->depth_bias);
+    i_store(g->primitive_front, m->primitive_front);
 }
 
-/* An edge function as a weight: in the unit that coverage.h gives it, and rounded once as there. */
-static inline f32x sample_weight(i32x e) { return i_to_f(e) * (1.0f / 256.0f); }
-
-/* The first `most` of RASTER_QUADS of the row, from `first` on. */
-static inline void play_sample_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue,
-                                   const sample_group *g, int first, int most)
+static inline void set_sample_triangle(const raster_tile *tile, const sample_group *g, int n, sample_triangle *t)
 {
-    const small_group *m = &g->m;
-    i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2), triangle = quad & 255;
-    i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16 & 255) + (i_lane_index() >> 1 & 1);
-    raster_quads q;
-    maskx wanted = take_row(tile, m, first, most, quad, &q);
-    i32x e[3];
     for (int i = 0; i < 3; i++)
-        e[i] = u_as_i(i_as_u(permute_i(u_as_i(g->c[i]), triangle)) +
-                      i_as_u(permute_i(m->a[i], triangle) * RASTER_SUBPIXEL) * i_as_u(x) +
-                      i_as_u(permute_i(m->b[i], triangle) * RASTER_SUBPIXEL) * i_as_u(y));
-    q.samples = i_set(0);
-    for (int n = 0; n < tile->pass->samples; n++) {
-        const i32x *offset = g->offset[n];
-        i32x inside = (e[0] + permute_i(offset[0], triangle)) | (e[1] + permute_i(offset[1], triangle)) |
-                      (e[2] + permute_i(offset[2], triangle));
-        q.samples |= (inside >= 0) & i_set(1 << n);
-    }
-    q.samples &= wanted;
-    const maskx cover = q.samples != 0;
-    if (!m_any(cover))
+        set_sample_edge(tile, t, i, g->a[i][n], g->b[i][n], g->fraction[i][n]);
+    t->z0 = g->z0[n], t->dz1 = g->dz1[n], t->dz2 = g->dz2[n];
+    t->inverse_area = g->inverse_area[n], t->depth_bias = g->depth_bias[n];
+}
+
+/* Shades the gathered row as it lies, or queues what there is of it. */
+static void play_sample_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, sample_group *g)
+{
+    raster_quads *q = &g->quads;
+    if (g->count == 0)
         return;
-    for (int i = 0; i < 3; i++) {
-        e[i] += permute_i(g->on_edge[i], triangle);
-        q.p[i] = sample_weight(e[i]) * permute(m->inverse_w[i], triangle);
+    for (int k = g->count; k < RASTER_QUADS; k++) {
+        g->row[k] = g->row[0];
+        q->at.mask[k] = 0;
     }
-    f32x z0 = permute(m->z0, triangle), dz1 = permute(m->dz1, triangle), dz2 = permute(m->dz2, triangle);
-    f32x inverse_area = permute(m->inverse_area, triangle), bias = permute(m->depth_bias, triangle);
-#define DEPTH_(e1, e2) \
-    f_saturate(((z0 + dz1 * (sample_weight(e1) * inverse_area)) + dz2 * (sample_weight(e2) * inverse_area)) + bias)
-    q.depth = DEPTH_(e[1], e[2]);
-    for (int n = 0; n < tile->pass->samples; n++)
-        q.sample_depth[n] =
-            DEPTH_(e[1] + permute_i(g->offset[n][1], triangle), e[2] + permute_i(g->offset[n][2], triangle));
-#undef DEPTH_
-    q.position = (x + tile->x0) | ((y + tile->y0) << 16);
-    take_varyings(m, first, &q);
-    play_quads(tile, draw, queue, &q, cover);
+    place_row(tile, &g->m, g->row, true, q);
+    uint32_t live = pixels_of_samples(&q->at);
+    if (queue->count == 0 && g->count == RASTER_QUADS) {
+        for (int k = 0; k < RASTER_QUADS; k++)
+            queue->waiting_samples[q->index[k]] = 0;
+        shade_quads(tile, draw, q, live);
+    } else {
+        queue_quads(tile, queue, q, live);
+    }
+    g->count = 0;
+}
+
+/* Tests the covered samples of a quad; the live ones go to the row, or are written where there is no shader. */
+static inline void take_sample_quad(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, sample_group *g,
+                                    int number, uint32_t covered, const f32x *depth)
+{
+    const int32_t quad = g->m.quad[number], index = g->m.index[number];
+    const maskx front = m_set(g->primitive_front[quad & 255] < 0);
+    raster_quads *q = &g->quads;
+    if ((queue->waiting_samples[index] & covered) != 0) {
+        play_sample_row(tile, draw, queue, g);
+        flush_queue(tile, queue);
+    }
+    const int k = g->count;
+    q->at.quad[k] = tile->data + g->m.place[number];
+    q->at.mask[k] = covered;
+    if (!draw->fragment) {
+        update_quad(tile, draw, &q->at, k, front, depth);
+        return;
+    }
+    if (!tests_late(draw))
+        q->at.mask[k] = test_quad(tile, draw, &q->at, k, covered, front, depth);
+    if (q->at.mask[k] == 0)
+        return;
+    for (int i = 0; i < tile->sample_groups; i++)
+        q->sample_depth[k * tile->sample_groups + i] = depth[i];
+    q->index[k] = (uint16_t)index;
+    g->row[k] = quad;
+    queue->waiting_samples[index] |= q->at.mask[k];
+    if (++g->count + queue->count == RASTER_QUADS)
+        play_sample_row(tile, draw, queue, g);
 }
 
 static void play_small_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *edges,
                                int first, int end)
 {
     sample_group g;
-    i32x reach[3];
+    sample_triangle t;
+    i32x best[3];
     gather_small(tile, s, edges, &g.m, first, end);
-    gather_sample_edges(tile, &g, reach);
-    sieve_quads(tile, &g.m, reach);
-    for (int i = 0, most = first_row(queue); i < g.m.count; i += most, most = RASTER_QUADS)
-        play_sample_row(tile, s->draw, queue, &g, i, most);
+    gather_sample_edges(tile, &g, best);
+    sieve_quads(tile, &g.m, best);
+    g.count = 0;
+    g.quads.at.stride = (size_t)tile->pass->samples * AMB_LANES;
+    for (int i = 0, n = -1; i < g.m.count; i++) {
+        const int32_t quad = g.m.quad[i], x = quad >> 8 & 255, y = quad >> 16 & 255;
+        if (n != (quad & 255)) {
+            n = quad & 255;
+            set_sample_triangle(tile, &g, n, &t);
+        }
+        int32_t whole[3];
+        f32x depth[RASTER_SAMPLE_GROUPS];
+        for (int k = 0; k < 3; k++)
+            whole[k] = g.whole[k][n] + g.a[k][n] * x + g.b[k][n] * y;
+        uint32_t covered = cover_quad(tile, &t, whole, depth) & all_of_pixels((uint32_t)quad >> 24, 0);
+        if (covered != 0)
+            take_sample_quad(tile, s->draw, queue, &g, i, covered, depth);
+    }
+    play_sample_row(tile, s->draw, queue, &g);
 }
 
 #else

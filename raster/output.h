@@ -6,8 +6,15 @@
 #include "core/compare_lanes.h"
 #include "raster/internal.h"
 
+#define RASTER_QUADS (AMB_LANES / 4)
+#define RASTER_SAMPLE_GROUPS (RASTER_MAX_SAMPLES / RASTER_QUADS)
+
 /* A tile being played. Its pixels lie block by block; a block holds `planes` runs of AMB_LANES floats: depth first,
- * stencil if there is one, then every channel of every attachment. */
+ * stencil if there is one, then every channel of every attachment.
+ *
+ * Where pixels have samples a run is as many times longer and goes quad by quad: four pixels of sample 0, of sample 1,
+ * … So a quad's samples are `sample_groups` groups of AMB_LANES lanes side by side (the last lanes may be the next
+ * quad's), and in a set of samples of a quad sample n of pixel p is bit 4n + p. */
 typedef struct raster_tile {
     const amb_pass *pass;
     float *data;
@@ -19,11 +26,13 @@ typedef struct raster_tile {
     float *spare;                           /* a block that is nobody's */
     const int32_t *packing;                 /* raster_scratch's, and */
     const int32_t (*boxes)[RASTER_SMALL_BOX * RASTER_SMALL_BOX];
+    int sample_groups;                                                   /* where pixels have samples: see below */
+    uint32_t all_samples;                                                /* of a quad */
+    i32x sample_x[RASTER_SAMPLE_GROUPS], sample_y[RASTER_SAMPLE_GROUPS]; /* 1/256 pixel from its centre */
     int thread;
     amb_pass_stats *stats;
 } raster_tile;
 
-/* Planes of a block: those of sample 0, then of sample 1, … */
 static inline int block_planes(const raster_tile *tile) { return tile->pass->planes * tile->pass->samples; }
 
 static inline float *block_at(const raster_tile *tile, int bx, int by)
@@ -44,13 +53,21 @@ static inline maskx inside_clip(const raster_tile *tile, int bx, int by)
 
 /* ---- access ----------------------------------------------------------------------------------------------------- */
 
-#define RASTER_QUADS (AMB_LANES / 4)
-
 /* Where the lanes' pixels lie: plane 0 of each quad. Either a whole block, or quads from anywhere in the tile; two of
  * them may be the same quad as long as no pixel is live in both. */
 typedef struct raster_pixels {
     float *quad[RASTER_QUADS];
+    size_t stride;               /* where pixels have samples: floats from a plane to the next */
+    uint32_t mask[RASTER_QUADS]; /* and which samples are meant */
 } raster_pixels;
+
+typedef enum raster_layout {
+    RASTER_BLOCK,      /* a whole block */
+    RASTER_PACKED,     /* quads */
+    RASTER_ONE_SAMPLE, /* of quads */
+    RASTER_ONE_QUAD,   /* a lane a sample: one of the quad's groups */
+    RASTER_ALL_SAMPLES /* of quads: those in `mask`. What is stored goes to all of them; nothing can be loaded. */
+} raster_layout;
 
 AMB_INLINE f32x load_quads(const float *const quad[RASTER_QUADS], size_t offset)
 {
@@ -67,23 +84,75 @@ AMB_INLINE f32x load_quads(const float *const quad[RASTER_QUADS], size_t offset)
 #endif
 }
 
-AMB_INLINE f32x load_plane(const raster_pixels *at, int plane, bool packed)
+AMB_INLINE size_t plane_offset(const raster_pixels *at, int plane, raster_layout how)
 {
-    size_t offset = (size_t)plane * AMB_LANES;
-    return packed ? load_quads((const float *const *)at->quad, offset) : f_load(at->quad[0] + offset);
+    return (size_t)plane * (how <= RASTER_PACKED ? AMB_LANES : at->stride);
+}
+
+AMB_INLINE f32x load_plane(const raster_pixels *at, int plane, raster_layout how)
+{
+    size_t offset = plane_offset(at, plane, how);
+    if (how == RASTER_BLOCK || how == RASTER_ONE_QUAD)
+        return f_load(at->quad[0] + offset);
+    return load_quads((const float *const *)at->quad, offset);
+}
+
+AMB_INLINE void store_lanes(float *first, f32x value, maskx live)
+{
+#if AMB_LANES == 16
+    _mm512_mask_storeu_ps(first, (__mmask16)m_bits(live), (__m512)value);
+#else
+    f_store(first, f_sel(live, value, f_load(first)));
+#endif
+}
+
+/* Quad number `quad` of the lanes, to all quads. */
+AMB_INLINE f32x spread_quad(f32x a, int quad)
+{
+#if AMB_LANES == 16
+    __m512 v = (__m512)a;
+    return (f32x)(quad == 0   ? _mm512_shuffle_f32x4(v, v, 0x00)
+                  : quad == 1 ? _mm512_shuffle_f32x4(v, v, 0x55)
+                  : quad == 2 ? _mm512_shuffle_f32x4(v, v, 0xaa)
+                              : _mm512_shuffle_f32x4(v, v, 0xff));
+#elif AMB_LANES == 8
+    __m256 v = (__m256)a;
+    return (f32x)(quad == 0 ? _mm256_permute2f128_ps(v, v, 0x00) : _mm256_permute2f128_ps(v, v, 0x11));
+#else
+    (void)quad;
+    return a;
+#endif
+}
+
+/* The samples of a quad that are in `mask`, of one group, as lanes. */
+AMB_INLINE maskx group_lanes(uint32_t mask, int group)
+{
+    return m_from_bits(mask >> group * AMB_LANES & AMB_ALL_LANES);
+}
+
+/* Every pixel's value to those of its samples that are in at->mask. */
+AMB_INLINE void store_all_samples(const raster_tile *tile, const raster_pixels *at, int plane, f32x value)
+{
+    size_t offset = plane_offset(at, plane, RASTER_ALL_SAMPLES);
+    for (int k = 0; k < RASTER_QUADS; k++) {
+        f32x quad = spread_quad(value, k);
+        for (int g = 0; g < tile->sample_groups; g++)
+            store_lanes(at->quad[k] + offset + g * AMB_LANES, quad, group_lanes(at->mask[k], g));
+    }
 }
 
 /* Writes the live lanes; the others keep what they hold. */
-AMB_INLINE void store_plane(const raster_pixels *at, int plane, f32x value, maskx live, bool packed)
+AMB_INLINE void store_plane(const raster_tile *tile, const raster_pixels *at, int plane, f32x value, maskx live,
+                            raster_layout how)
 {
-    size_t offset = (size_t)plane * AMB_LANES;
+    size_t offset = plane_offset(at, plane, how);
     float *first = at->quad[0] + offset;
-    if (!packed) {
-#if AMB_LANES == 16
-        _mm512_mask_storeu_ps(first, (__mmask16)m_bits(live), (__m512)value);
-#else
-        f_store(first, f_sel(live, value, f_load(first)));
-#endif
+    if (how == RASTER_ALL_SAMPLES) {
+        store_all_samples(tile, at, plane, value);
+        return;
+    }
+    if (how == RASTER_BLOCK || how == RASTER_ONE_QUAD || AMB_LANES == 4) {
+        store_lanes(first, value, live);
         return;
     }
 #if AMB_LANES == 16
@@ -147,9 +216,9 @@ static inline i32x stencil_result(amb_stencil_op op, i32x stored, int reference)
     }
 }
 
-static inline i32x load_stencil(const raster_tile *tile, const raster_pixels *at, int base, bool packed)
+static inline i32x load_stencil(const raster_tile *tile, const raster_pixels *at, raster_layout how)
 {
-    return f_to_i(load_plane(at, base + tile->pass->stencil_plane, packed)) & 255;
+    return f_to_i(load_plane(at, tile->pass->stencil_plane, how)) & 255;
 }
 
 /* Which lanes pass the stencil test of the side they show? */
@@ -161,13 +230,22 @@ static inline maskx stencil_matches(const amb_stencil *s, i32x stored, maskx fro
            (~front & stencil_passes(s->back.compare, reference, stored & mask));
 }
 
-/* Which lanes pass the draw's stencil and depth tests. base: the first plane of the sample, here and below. */
-static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
-                                 maskx front, f32x depth, bool packed)
+/* Tests must wait for the shader when it makes the depth, and when a failed test would change the stencil of a fragment
+ * that the shader may still discard. */
+static inline bool tests_late(const amb_draw *draw)
 {
-    maskx passed = compare_lanes(draw->depth_compare, depth, load_plane(at, base, packed));
+    const amb_stencil *s = &draw->stencil;
+    return draw->writes_depth ||
+           (s->on && (s->front.fail | s->front.depth_fail | s->back.fail | s->back.depth_fail) != AMB_STENCIL_KEEP);
+}
+
+/* Which lanes pass the draw's stencil and depth tests. */
+static inline maskx output_tests(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
+                                 f32x depth, raster_layout how)
+{
+    maskx passed = compare_lanes(draw->depth_compare, depth, load_plane(at, 0, how));
     if (draw->stencil.on)
-        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, base, packed), front);
+        passed &= stencil_matches(&draw->stencil, load_stencil(tile, at, how), front);
     return passed;
 }
 
@@ -181,31 +259,31 @@ static inline i32x stencil_update(const amb_stencil *s, const amb_stencil_face *
 
 /* Tests the live lanes for good, writes depth and stencil, and returns the lanes whose colour is to be written. */
 static inline maskx update_depth_stencil(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
-                                         int base, maskx front, f32x depth, maskx live, bool packed)
+                                         maskx front, f32x depth, maskx live, raster_layout how)
 {
     const amb_stencil *s = &draw->stencil;
-    maskx near_enough = compare_lanes(draw->depth_compare, depth, load_plane(at, base, packed)),
-          passed = live & near_enough;
+    maskx near_enough = compare_lanes(draw->depth_compare, depth, load_plane(at, 0, how)), passed = live & near_enough;
     if (s->on) {
-        i32x stored = load_stencil(tile, at, base, packed);
+        i32x stored = load_stencil(tile, at, how);
         int write = 255 & ~s->write_mask_off;
         maskx match = stencil_matches(s, stored, front);
         i32x result = i_sel(front, stencil_update(s, &s->front, stored, match, near_enough),
                             stencil_update(s, &s->back, stored, match, near_enough));
         result = (result & write) | (stored & ~write);
-        store_plane(at, base + tile->pass->stencil_plane, i_to_f(result), live, packed);
+        store_plane(tile, at, tile->pass->stencil_plane, i_to_f(result), live, how);
         passed &= match;
     }
     if (!draw->depth_write_off)
-        store_plane(at, base, depth, passed, packed);
+        store_plane(tile, at, 0, depth, passed, how);
     return passed;
 }
 
 /* ---- blending --------------------------------------------------------------------------------------------------- */
 
 /* One attachment, with one of the plain modes. */
-AMB_INLINE void store_target(const raster_pixels *at, raster_format format, const raster_srgb *srgb, int plane,
-                             int channels, amb_blend mode, const f32x color[4], maskx live, bool packed)
+AMB_INLINE void store_target(const raster_tile *tile, const raster_pixels *at, raster_format format,
+                             const raster_srgb *srgb, int plane, int channels, amb_blend mode, const f32x color[4],
+                             maskx live, raster_layout how)
 {
     f32x source[4];
     for (int c = 0; c < 4; c++)
@@ -214,12 +292,12 @@ AMB_INLINE void store_target(const raster_pixels *at, raster_format format, cons
     for (int c = 0; c < channels; c++, plane++) {
         f32x value = source[c];
         if (mode == AMB_BLEND_ALPHA)
-            value = (c == 3 ? source[3] : source[c] * source[3]) + load_plane(at, plane, packed) * rest;
+            value = (c == 3 ? source[3] : source[c] * source[3]) + load_plane(at, plane, how) * rest;
         else if (mode == AMB_BLEND_ADD)
-            value = source[c] + load_plane(at, plane, packed);
+            value = source[c] + load_plane(at, plane, how);
         else if (mode == AMB_BLEND_MULTIPLY)
-            value = source[c] * load_plane(at, plane, packed);
-        store_plane(at, plane, quantize(format, srgb, c, value), live, packed);
+            value = source[c] * load_plane(at, plane, how);
+        store_plane(tile, at, plane, quantize(format, srgb, c, value), live, how);
     }
 }
 
@@ -284,7 +362,7 @@ static inline f32x blend_result(amb_blend_op op, f32x source, f32x source_factor
 /* Any equation, any channel mask. */
 static __attribute__((noinline)) void store_general(const raster_tile *tile, const raster_pixels *at, int plane,
                                                     const amb_draw *draw, int target, const amb_fs_out *out, maskx live,
-                                                    bool packed)
+                                                    raster_layout how)
 {
     const raster_attachment *a = &tile->pass->color[target];
     const bool clamped = is_unorm(a->format);
@@ -305,7 +383,7 @@ static __attribute__((noinline)) void store_general(const raster_tile *tile, con
     }
     f32x stored[4] = {f_set(0.0f), f_set(0.0f), f_set(0.0f), f_set(1.0f)};
     for (int c = 0; c < a->channels; c++)
-        stored[c] = load_plane(at, plane + c, packed);
+        stored[c] = load_plane(at, plane + c, how);
     for (int c = 0; c < a->channels; c++) {
         if (draw->channels_off[target] >> c & 1)
             continue;
@@ -316,28 +394,28 @@ static __attribute__((noinline)) void store_general(const raster_tile *tile, con
                          : blend_result(c == 3 ? q->alpha_op : q->color_op, source[c],
                                         blend_factor(fs, c, source, second, stored, constant), stored[c],
                                         blend_factor(ft, c, source, second, stored, constant));
-        store_plane(at, plane + c, quantize(a->format, tile->pass->srgb, c, value), live, packed);
+        store_plane(tile, at, plane + c, quantize(a->format, tile->pass->srgb, c, value), live, how);
     }
 }
 
 /* The plain modes on what is not float: one body a format. */
 static __attribute__((noinline)) void store_rounded(const raster_tile *tile, const raster_pixels *at, int plane,
                                                     const raster_attachment *a, amb_blend mode, const f32x source[4],
-                                                    maskx live, bool packed)
+                                                    maskx live, raster_layout how)
 {
     const raster_srgb *srgb = tile->pass->srgb;
     if (a->format == RASTER_HALF)
-        store_target(at, RASTER_HALF, srgb, plane, a->channels, mode, source, live, packed);
+        store_target(tile, at, RASTER_HALF, srgb, plane, a->channels, mode, source, live, how);
     else if (a->format == RASTER_UNORM8)
-        store_target(at, RASTER_UNORM8, srgb, plane, a->channels, mode, source, live, packed);
+        store_target(tile, at, RASTER_UNORM8, srgb, plane, a->channels, mode, source, live, how);
     else if (a->format == RASTER_SRGB8)
-        store_target(at, RASTER_SRGB8, srgb, plane, 4, mode, source, live, packed);
+        store_target(tile, at, RASTER_SRGB8, srgb, plane, 4, mode, source, live, how);
     else
-        store_target(at, RASTER_SMALL_FLOAT, srgb, plane, 3, mode, source, live, packed);
+        store_target(tile, at, RASTER_SMALL_FLOAT, srgb, plane, 3, mode, source, live, how);
 }
 
-AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
-                                const amb_fs_out *out, maskx live, bool packed)
+AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
+                                const amb_fs_out *out, maskx live, raster_layout how)
 {
     const amb_pass *pass = tile->pass;
     for (int i = 0; i < pass->target_count; i++) {
@@ -345,40 +423,51 @@ AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, c
             continue;
         const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
         const raster_attachment *a = &pass->color[i];
-        int plane = base + a->first;
-        if (draw->blend[i] == AMB_BLEND_EQUATION || draw->channels_off[i] != 0)
-            store_general(tile, at, plane, draw, i, out, live, packed);
+        const amb_blend mode = how == RASTER_ALL_SAMPLES ? AMB_BLEND_OFF : draw->blend[i];
+        if (how != RASTER_ALL_SAMPLES && (mode == AMB_BLEND_EQUATION || draw->channels_off[i] != 0))
+            store_general(tile, at, a->first, draw, i, out, live, how);
         else if (a->format != RASTER_FLOAT)
-            store_rounded(tile, at, plane, a, draw->blend[i], source, live, packed);
+            store_rounded(tile, at, a->first, a, mode, source, live, how);
         else if (a->channels == 4) /* the usual case, unrolled */
-            store_target(at, RASTER_FLOAT, NULL, plane, 4, draw->blend[i], source, live, packed);
+            store_target(tile, at, RASTER_FLOAT, NULL, a->first, 4, mode, source, live, how);
         else
-            store_target(at, RASTER_FLOAT, NULL, plane, a->channels, draw->blend[i], source, live, packed);
+            store_target(tile, at, RASTER_FLOAT, NULL, a->first, a->channels, mode, source, live, how);
     }
 }
 
-/* Two forms, so that each knows how its pixels lie. */
-static __attribute__((noinline)) void store_block_colors(const raster_tile *tile, const amb_draw *draw,
-                                                         const raster_pixels *at, int base, const amb_fs_out *out,
-                                                         maskx live)
+/* Does no attachment read what it holds? */
+static inline bool colors_replaced(const raster_tile *tile, const amb_draw *draw)
 {
-    store_colors_of(tile, draw, at, base, out, live, false);
+    for (int i = 0; i < tile->pass->target_count; i++)
+        if ((draw->targets_off >> i & 1u) == 0 && (draw->blend[i] != AMB_BLEND_OFF || draw->channels_off[i] != 0))
+            return false;
+    return true;
 }
 
-static __attribute__((noinline)) void store_packed_colors(const raster_tile *tile, const amb_draw *draw,
-                                                          const raster_pixels *at, int base, const amb_fs_out *out,
-                                                          maskx live)
-{
-    store_colors_of(tile, draw, at, base, out, live, true);
-}
+/* A form for each layout, which so knows how its pixels lie. */
+#define STORE_FORM_(name, how)                                                                                         \
+    static __attribute__((noinline)) void name(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, \
+                                               const amb_fs_out *out, maskx live)                                      \
+    {                                                                                                                  \
+        store_colors_of(tile, draw, at, out, live, how);                                                               \
+    }
+STORE_FORM_(store_block_colors, RASTER_BLOCK)
+STORE_FORM_(store_packed_colors, RASTER_PACKED)
+STORE_FORM_(store_sample_colors, RASTER_ONE_SAMPLE)
+STORE_FORM_(store_colors_of_samples, RASTER_ALL_SAMPLES)
+#undef STORE_FORM_
 
-static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int base,
-                                const amb_fs_out *out, maskx live, bool packed)
+static inline void store_colors(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
+                                const amb_fs_out *out, maskx live, raster_layout how)
 {
-    if (packed)
-        store_packed_colors(tile, draw, at, base, out, live);
+    if (how == RASTER_PACKED)
+        store_packed_colors(tile, draw, at, out, live);
+    else if (how == RASTER_ONE_SAMPLE)
+        store_sample_colors(tile, draw, at, out, live);
+    else if (how == RASTER_ALL_SAMPLES)
+        store_colors_of_samples(tile, draw, at, out, live);
     else
-        store_block_colors(tile, draw, at, base, out, live);
+        store_block_colors(tile, draw, at, out, live);
 }
 
 #endif

@@ -134,7 +134,7 @@ static inline void locate_quads(const raster_tile *tile, i32x quad, int32_t *pla
 #else
     i32x block = (y >> 1) * tile->blocks_x + (x >> 2), part = x >> 1 & 1;
 #endif
-    i_store(place, block * (block_planes(tile) * AMB_LANES) + part * 4);
+    i_store(place, block * (block_planes(tile) * AMB_LANES) + part * (4 * tile->pass->samples));
     i_store(index, block * RASTER_QUADS + part);
 }
 
@@ -170,41 +170,31 @@ static inline uint32_t take_quads(raster_queue *queue, const raster_quads *q, ui
     return AMB_ALL_LANES;
 }
 
-/* The covered lanes that pass the early tests; q->samples: of `samples`, those that do. */
-static inline uint32_t test_early(const raster_tile *tile, const amb_draw *draw, raster_quads *q, i32x samples,
+/* The covered lanes that pass the early tests. */
+static inline uint32_t test_early(const raster_tile *tile, const amb_draw *draw, const raster_quads *q,
                                   uint32_t covered)
 {
-    const maskx front = q->primitive_front < 0;
     if (tests_late(draw))
         return covered;
-    if (tile->pass->samples == 1)
-        return covered & m_bits(output_tests(tile, draw, &q->at, 0, front, q->depth, true));
-    q->samples = samples_passing(tile, draw, &q->at, front, samples, q->sample_depth, true);
-    return covered & m_bits(q->samples != 0);
+    return covered & m_bits(output_tests(tile, draw, &q->at, q->primitive_front < 0, q->depth, RASTER_PACKED));
 }
 
 /* Tests and writes the lanes for good, without a shader. */
-static inline void update_quads(const raster_tile *tile, const amb_draw *draw, const raster_quads *q, i32x samples,
-                                maskx live)
+static inline void update_quads(const raster_tile *tile, const amb_draw *draw, const raster_quads *q, maskx live)
 {
-    const maskx front = q->primitive_front < 0;
-    if (tile->pass->samples == 1)
-        update_depth_stencil(tile, draw, &q->at, 0, front, q->depth, live, true);
-    else
-        update_samples(tile, draw, &q->at, front, samples & live, q->sample_depth, true);
+    update_depth_stencil(tile, draw, &q->at, q->primitive_front < 0, q->depth, live, RASTER_PACKED);
 }
 
 /* play_quads where one pixel is covered twice: quad by quad as far as needed. */
 static __attribute__((noinline)) void play_in_order(const raster_tile *tile, const amb_draw *draw, raster_queue *queue,
-                                                    raster_quads *q, uint32_t covered)
+                                                    const raster_quads *q, uint32_t covered)
 {
-    const i32x samples = tile->pass->samples > 1 ? q->samples : i_set(0);
     for (uint32_t taken; covered != 0; covered &= ~taken) {
-        uint32_t live = draw->fragment ? test_early(tile, draw, q, samples, covered) : covered;
+        uint32_t live = draw->fragment ? test_early(tile, draw, q, covered) : covered;
         taken = take_quads(queue, q, covered, live);
         live &= taken;
         if (!draw->fragment) {
-            update_quads(tile, draw, q, samples, m_from_bits(live));
+            update_quads(tile, draw, q, m_from_bits(live));
             for (int i = 0; i < RASTER_QUADS; i++)
                 queue->waiting[q->index[i]] = 0;
         } else if (live != 0) {
@@ -235,20 +225,19 @@ static inline bool meets_others(const raster_queue *queue, const raster_quads *q
     return (waiting & m_bits(cover)) != 0;
 }
 
-/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. q->samples: those covered. */
+/* Tests, shades or queues the covered lanes, in order where one pixel is covered twice. */
 static inline void play_quads(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, raster_quads *q,
                               maskx cover)
 {
-    const i32x samples = tile->pass->samples > 1 ? q->samples : i_set(0);
     if (meets_others(queue, q, cover)) {
         play_in_order(tile, draw, queue, q, m_bits(cover));
         return;
     }
     if (!draw->fragment) {
-        update_quads(tile, draw, q, samples, cover);
+        update_quads(tile, draw, q, cover);
         return;
     }
-    uint32_t live = test_early(tile, draw, q, samples, m_bits(cover));
+    uint32_t live = test_early(tile, draw, q, m_bits(cover));
     if (queue->count == 0 && all_quads_live(live))
         shade_quads(tile, draw, q, live);
     else if (live != 0)
@@ -263,41 +252,44 @@ static inline maskx take_row(const raster_tile *tile, const small_group *m, int 
         q->index[i] = (uint16_t)m->index[first + i];
         q->at.quad[i] = tile->data + m->place[first + i];
     }
-    q->primitive_front = permute_i(m->primitive_front, quad & 255);
     i32x pixel = i_set(1 << 24) << (i_lane_index() & 3);
     return ((quad & pixel) != 0) & (i_lane_index() < 4 * most);
 }
 
-static inline void take_varyings(const small_group *m, int first, raster_quads *q)
+/* What the pixels of a row of RASTER_QUADS quads have at their centres, and for a shader. */
+static inline void place_row(const raster_tile *tile, const small_group *m, const int32_t *row, bool shaded,
+                             raster_quads *q)
 {
-    for (int i = 0; i < RASTER_QUADS; i++)
-        for (int k = 0; k < 3; k++)
-            q->varying[k][i] = m->varying[k][m->quad[first + i] & 255];
-}
-
-/* The first `most` of RASTER_QUADS of the row, from `first` on. */
-static inline void play_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, const small_group *m,
-                            int first, int most)
-{
-    i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2), triangle = quad & 255;
+    i32x quad = permute_i(i_load(row), i_lane_index() >> 2), triangle = quad & 255;
     i32x x = (quad >> 8 & 255) + (i_lane_index() & 1), y = (quad >> 16 & 255) + (i_lane_index() >> 1 & 1);
-    raster_quads q;
-    maskx cover = take_row(tile, m, first, most, quad, &q);
-    q.position = (x + tile->x0) | ((y + tile->y0) << 16);
+    q->position = (x + tile->x0) | ((y + tile->y0) << 16);
+    q->primitive_front = permute_i(m->primitive_front, triangle);
     f32x weight[3];
     for (int i = 0; i < 3; i++)
         weight[i] =
             i_to_f(permute_i(m->c[i], triangle) + permute_i(m->a[i], triangle) * x + permute_i(m->b[i], triangle) * y) +
             permute(m->bias[i], triangle);
     f32x inverse_area = permute(m->inverse_area, triangle);
-    q.depth = f_saturate(((permute(m->z0, triangle) + permute(m->dz1, triangle) * (weight[1] * inverse_area)) +
-                          permute(m->dz2, triangle) * (weight[2] * inverse_area)) +
-                         permute(m->depth_bias, triangle));
-    if (draw->fragment) {
-        for (int i = 0; i < 3; i++)
-            q.p[i] = weight[i] * permute(m->inverse_w[i], triangle);
-        take_varyings(m, first, &q);
+    q->depth = f_saturate(((permute(m->z0, triangle) + permute(m->dz1, triangle) * (weight[1] * inverse_area)) +
+                           permute(m->dz2, triangle) * (weight[2] * inverse_area)) +
+                          permute(m->depth_bias, triangle));
+    if (!shaded)
+        return;
+    for (int k = 0; k < 3; k++) {
+        q->p[k] = weight[k] * permute(m->inverse_w[k], triangle);
+        for (int i = 0; i < RASTER_QUADS; i++)
+            q->varying[k][i] = m->varying[k][row[i] & 255];
     }
+}
+
+/* The first `most` of RASTER_QUADS of the row, from `first` on. */
+static inline void play_row(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, const small_group *m,
+                            int first, int most)
+{
+    raster_quads q;
+    i32x quad = permute_i(i_load(m->quad + first), i_lane_index() >> 2);
+    maskx cover = take_row(tile, m, first, most, quad, &q);
+    place_row(tile, m, m->quad + first, draw->fragment != NULL, &q);
     play_quads(tile, draw, queue, &q, cover);
 }
 

@@ -82,39 +82,61 @@ static void fill(const raster_tile *tile, int plane, float value)
         f_store(tile->data + (i * (size_t)block_planes(tile) + (size_t)plane) * AMB_LANES, f_set(value));
 }
 
-/* Gives every sample what sample 0 holds. */
+/* Tiles come and go as if pixels had one sample, each block's planes at its front. This gives every sample of a plane
+ * what the plane so holds, from the last plane on, as planes of all samples lie farther back. */
 static void spread_samples(const raster_tile *tile)
 {
-    const size_t blocks = blocks_of(tile), floats = (size_t)tile->pass->planes * AMB_LANES;
-    for (size_t i = 0; i < blocks; i++)
-        for (int k = 1; k < tile->pass->samples; k++) {
-            float *block = tile->data + i * floats * (size_t)tile->pass->samples;
-            memcpy(block + (size_t)k * floats, block, floats * sizeof *block);
+    const size_t blocks = blocks_of(tile), samples = (size_t)tile->pass->samples;
+    for (size_t i = 0; i < blocks; i++) {
+        float *block = tile->data + i * (size_t)block_planes(tile) * AMB_LANES;
+        for (size_t plane = (size_t)tile->pass->planes; plane-- > 0;) {
+            f32x value = f_load(block + plane * AMB_LANES);
+            float *to = block + plane * samples * AMB_LANES;
+            for (size_t k = 0; k < RASTER_QUADS; k++)
+                for (int g = 0; g < tile->sample_groups; g++)
+                    store_lanes(to + 4 * k * samples + g * AMB_LANES, spread_quad(value, (int)k),
+                                group_lanes(tile->all_samples, g));
         }
+    }
 }
 
-/* Averages the samples of a channel into sample 0: neighbours in pairs, then pairs of pairs. */
-static void resolve_channel(const raster_tile *tile, const raster_attachment *a, int channel)
+/* The attachment and channel of a plane, if it is one of colour. */
+static const raster_attachment *color_of_plane(const amb_pass *pass, int plane)
 {
-    const size_t blocks = blocks_of(tile), floats = (size_t)tile->pass->planes * AMB_LANES;
+    for (int i = 0; i < pass->target_count; i++)
+        if (plane >= pass->color[i].first && plane < pass->color[i].first + pass->color[i].channels)
+            return &pass->color[i];
+    return NULL;
+}
+
+/* Puts one plane a pixel to the blocks' fronts: the average of a colour's samples, neighbours in pairs, then pairs of
+ * pairs; of others sample 0. Planes must be taken in order. */
+static void resolve_plane(const raster_tile *tile, int plane)
+{
+    const size_t blocks = blocks_of(tile), stride = (size_t)tile->pass->samples * AMB_LANES;
+    const raster_attachment *a = color_of_plane(tile->pass, plane);
     const int samples = tile->pass->samples;
     for (size_t i = 0; i < blocks; i++) {
-        float *at = tile->data + i * floats * (size_t)samples + (size_t)(a->first + channel) * AMB_LANES;
+        float *block = tile->data + i * (size_t)tile->pass->planes * stride, *at = block + (size_t)plane * stride;
+        const float *quad[RASTER_QUADS];
+        for (int k = 0; k < RASTER_QUADS; k++)
+            quad[k] = at + 4 * k * samples;
         f32x sum[RASTER_MAX_SAMPLES];
-        for (int k = 0; k < samples; k++)
-            sum[k] = f_load(at + (size_t)k * floats);
-        for (int n = samples; n > 1; n /= 2)
+        for (int n = 0; n < (a ? samples : 1); n++)
+            sum[n] = load_quads(quad, (size_t)(4 * n));
+        for (int n = samples; a && n > 1; n /= 2)
             for (int k = 0; k < n / 2; k++)
                 sum[k] = sum[2 * k] + sum[2 * k + 1];
-        f_store(at, quantize(a->format, tile->pass->srgb, channel, sum[0] * (1.0f / (float)samples)));
+        if (a)
+            sum[0] = quantize(a->format, tile->pass->srgb, plane - a->first, sum[0] * (1.0f / (float)samples));
+        f_store(block + plane * AMB_LANES, sum[0]);
     }
 }
 
 static void resolve_samples(const raster_tile *tile)
 {
-    for (int i = 0; i < tile->pass->target_count; i++)
-        for (int c = 0; c < tile->pass->color[i].channels; c++)
-            resolve_channel(tile, &tile->pass->color[i], c);
+    for (int plane = 0; plane < tile->pass->planes; plane++)
+        resolve_plane(tile, plane);
 }
 
 /* Fills an attachment's planes with its pixels, or with its clear value. */
@@ -292,6 +314,8 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     tile.x0 = number % pass->tiles_x * pass->tile_size;
     tile.y0 = number / pass->tiles_x * pass->tile_size;
     tile.blocks_x = pass->tile_size / AMB_BLOCK_W;
+    if (pass->samples > 1)
+        set_samples(&tile);
     tile.right = pass->width - tile.x0 < pass->tile_size ? pass->width - tile.x0 : pass->tile_size;
     tile.bottom = pass->height - tile.y0 < pass->tile_size ? pass->height - tile.y0 : pass->tile_size;
     const size_t bytes = raster_tile_floats(pass) * sizeof(float);
@@ -301,7 +325,8 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
         memcpy(tile.data, pass->tile_store[number], bytes);
     } else {
         load_tile(&tile, pass->target.keep || pass->tile_started[number]);
-        spread_samples(&tile);
+        if (pass->samples > 1)
+            spread_samples(&tile);
     }
     lap = raster_lap(timed, tile.stats, AMB_STAGE_TILES, lap);
     const uint64_t nested = tile.stats->ticks[AMB_STAGE_FRAGMENTS] + tile.stats->ticks[AMB_STAGE_OUTPUT];
