@@ -7,147 +7,34 @@
 
 #include <stdlib.h>
 
-#define LOOKUP_SLOTS 32768
-
 AMB_DECLARE_WIDE(void, raster_vertices, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_domain, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_geometry, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_setup, (const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch));
 AMB_DECLARE_WIDE(void, raster_tile, (const amb_pass *pass, int tile, raster_scratch *scratch, int thread));
 
-/* For every set of wanted quads of a block and every slot to begin at: which lane each lane takes. */
-static int32_t *make_packing(uint32_t lanes)
-{
-    uint32_t quads = lanes / 4;
-    int32_t *packing = calloc((size_t)lanes * quads << quads, sizeof *packing);
-    for (uint32_t wanted = 0; packing && wanted < 1u << quads; wanted++)
-        for (uint32_t first = 0; first < quads; first++) {
-            int32_t *entry = packing + (size_t)(wanted * quads + first) * lanes;
-            uint32_t slot = first;
-            for (uint32_t quad = 0; quad < quads; quad++)
-                if (wanted >> quad & 1u) {
-                    for (uint32_t k = 0; k < 4 && slot < quads; k++)
-                        entry[slot * 4 + k] = (int32_t)(quad * 4 + k);
-                    slot++;
-                }
-        }
-    return packing;
-}
-
-static void make_boxes(raster_scratch *s)
-{
-    for (int width = 1; width <= RASTER_SMALL_BOX; width++)
-        for (int height = 1; height <= RASTER_SMALL_BOX; height++) {
-            int32_t *box = s->boxes[width - 1 + RASTER_SMALL_BOX * (height - 1)];
-            for (int i = 0; i < width * height; i++)
-                box[i] = (i % width) << 9 | (i / width) << 17;
-        }
-}
-
-static bool make_scratch(const amb_pass *pass, raster_scratch *s)
-{
-    const size_t vertices = RASTER_CHUNK_VERTICES + 16, corners = RASTER_CHUNK_EMITTED + 16; /* lanes of padding */
-    const size_t spare = (size_t)16 * (size_t)pass->planes * (size_t)pass->samples;          /* a block */
-    s->lookup = calloc(LOOKUP_SLOTS, sizeof *s->lookup);
-    s->index = malloc(vertices * sizeof *s->index);
-    s->instance = malloc(vertices * sizeof *s->instance);
-    s->clip_x = malloc(4 * vertices * sizeof *s->clip_x);
-    s->code = malloc(vertices * sizeof *s->code);
-    s->corner_memory = malloc(4 * corners * sizeof *s->corner_memory);
-    s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
-    s->tile = aligned_alloc(64, (raster_tile_floats(pass) + spare) * sizeof *s->tile);
-    make_boxes(s);
-    s->packing = make_packing((uint32_t)amb_context_isa(pass->context));
-    if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->group ||
-        !s->tile || !s->packing)
-        return false;
-    memset(s->group, 0, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
-    s->clip_y = s->clip_x + vertices;
-    s->clip_z = s->clip_y + vertices;
-    s->clip_w = s->clip_z + vertices;
-    for (int i = 0; i < 4; i++)
-        s->corner[i] = s->corner_memory + (size_t)i * corners;
-    return true;
-}
-
-/* What patches need. */
-static bool make_patch_scratch(raster_scratch *s)
-{
-    const size_t vertices = RASTER_CHUNK_VERTICES + 16;
-    s->patch = malloc(vertices * sizeof *s->patch);
-    s->u = malloc(2 * vertices * sizeof *s->u);
-    s->seen = malloc(RASTER_PATTERN_POINTS * sizeof *s->seen);
-    s->patterns = calloc(1, sizeof *s->patterns);
-    s->constants = aligned_alloc(64, (size_t)AMB_MAX_PATCH_FLOATS * 16 * sizeof *s->constants);
-    s->corners = aligned_alloc(64, (size_t)AMB_MAX_PATCH_CORNERS * 16 * sizeof *s->corners);
-    if (!s->patch || !s->u || !s->seen || !s->patterns || !s->constants || !s->corners)
-        return false;
-    s->v = s->u + vertices;
-    return true;
-}
-
-/* What geometry shaders need: primary: floats of a vertex that goes in; emitted: of all that one primitive emits. */
-static bool make_geometry_scratch(raster_scratch *s, size_t primary, size_t emitted)
-{
-    const size_t corners = RASTER_CHUNK_EMITTED + 16;
-    s->primary = malloc(primary * (RASTER_CHUNK_VERTICES + 16) * sizeof *s->primary);
-    s->emitted = calloc((emitted + 3) * 16, sizeof *s->emitted); /* varyings are read by four */
-    s->other_memory = malloc(4 * corners * sizeof *s->other_memory);
-    if (!s->primary || !s->emitted || !s->other_memory)
-        return false;
-    for (int i = 0; i < 4; i++)
-        s->other_corner[i] = s->other_memory + (size_t)i * corners;
-    return true;
-}
-
-static bool make_workers(amb_pass *pass)
-{
-    int threads = amb_context_threads(pass->context);
-    pass->scratch = calloc((size_t)threads, sizeof *pass->scratch);
-    if (!pass->scratch)
-        return false;
-    pass->threads = threads;
-    bool patches = false;
-    size_t primary = 0, emitted = 0;
-    for (size_t i = 0; i < pass->draw_count; i++) {
-        const amb_geometry *g = &pass->draw[i].state.geometry;
-        const size_t in = 4 + (size_t)g->input_floats,
-                     out = (4 + (size_t)pass->draw[i].state.varying_floats) * (size_t)g->vertices;
-        patches |= pass->draw[i].patches;
-        if (g->shader)
-            primary = in > primary ? in : primary, emitted = out > emitted ? out : emitted;
-    }
-    for (int i = 0; i < threads; i++) {
-        raster_scratch *s = &pass->scratch[i];
-        if (!make_scratch(pass, s) || (patches && !make_patch_scratch(s)) ||
-            (emitted > 0 && !make_geometry_scratch(s, primary, emitted)))
-            return false;
-    }
-    return raster_make_patches(pass);
-}
-
-bool raster_reserve_vertices(raster_chunk *chunk, size_t count)
-{
-    return raster_grow(&chunk->vertex, &chunk->vertex_capacity, count * chunk->stride, sizeof *chunk->vertex);
-}
-
-bool raster_reserve_triangles(raster_chunk *chunk, size_t count)
-{
-    return raster_grow(&chunk->triangle, &chunk->triangle_capacity, count, sizeof *chunk->triangle);
-}
-
 /* ---- jobs ------------------------------------------------------------------------------------------------------- */
 
-/* Room for the vertices that the chunk's shaders make. */
-static bool reserve(raster_chunk *chunk, const raster_scratch *scratch)
+/* Room for the vertices that the chunk's shaders make, in whole groups of lanes. */
+static bool reserve_made(raster_chunk *chunk, raster_scratch *scratch)
 {
     const amb_geometry *g = &chunk->draw->state.geometry;
-    size_t vertices = scratch->unique_count, triangles = scratch->corner_count;
+    size_t vertices = (scratch->unique_count + 15u) & ~15u;
     if (g->shader)
-        vertices = triangles = (triangles + 15) / 16 * 16 * (size_t)g->vertices;
-    vertices += 16, triangles += 16;
-    return raster_renew(&chunk->vertex, &chunk->vertex_capacity, vertices * chunk->stride, sizeof *chunk->vertex) &&
-           raster_renew(&chunk->triangle, &chunk->triangle_capacity, triangles, sizeof *chunk->triangle);
+        vertices = ((scratch->corner_count + 15u) & ~15u) * (size_t)g->vertices;
+    return raster_reserve_vertices(chunk, scratch, vertices);
+}
+
+/* Set-up, with as many triangles as come in, or more where some are clipped. */
+static bool set_up(amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
+{
+    chunk->primitive = scratch->corner_count > 0 ? scratch->corner[3][0] : 0; /* they ascend */
+    if (!raster_reserve_triangles(chunk, scratch, scratch->corner_count + 16u))
+        return false;
+    AMB_DISPATCH(amb_context_isa(pass->context), raster_setup)(pass, chunk, scratch);
+    raster_trim(&scratch->batch, chunk->triangle, chunk->triangle_capacity * sizeof *chunk->triangle,
+                chunk->triangle_count * sizeof *chunk->triangle);
+    return !scratch->failed;
 }
 
 static void chunk_job(void *user, int index, int thread)
@@ -165,7 +52,7 @@ static void chunk_job(void *user, int index, int thread)
     else
         raster_collect(chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_CORNERS, lap);
-    if (scratch->failed || !reserve(chunk, scratch)) {
+    if (scratch->failed || !reserve_made(chunk, scratch)) {
         scratch->failed = true;
         return;
     }
@@ -176,8 +63,10 @@ static void chunk_job(void *user, int index, int thread)
     if (chunk->draw->state.geometry.shader)
         AMB_DISPATCH(isa, raster_geometry)(pass, chunk, scratch);
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_VERTICES, lap);
-    chunk->primitive = scratch->corner_count > 0 ? scratch->corner[3][0] : 0; /* they ascend */
-    AMB_DISPATCH(isa, raster_setup)(pass, chunk, scratch);
+    if (!set_up(pass, chunk, scratch)) {
+        scratch->failed = true;
+        return;
+    }
     lap = raster_lap(timed, &scratch->stats, AMB_STAGE_SETUP, lap);
     raster_bin(pass, chunk, scratch);
     raster_lap(timed, &scratch->stats, AMB_STAGE_BINS, lap);
@@ -218,6 +107,8 @@ static bool run_batch(amb_pass *pass, bool last)
     amb_parallel_for(pass->context, pass->tiles_x * pass->tiles_y, tile_job, pass);
     pass->chunk_count = pass->chunks_ready = 0;
     pass->bytes = 0;
+    for (int i = 0; i < pass->threads; i++)
+        raster_reset(&pass->scratch[i].batch);
     return !any_failed(pass);
 }
 
@@ -231,19 +122,17 @@ static size_t chunk_bytes(const amb_pass *pass, const raster_chunk *chunk)
            vertices = chunk->most_vertices;
     if (g->shader)
         vertices = triangles *= (size_t)g->vertices;
-    return (tiles + 1) * (sizeof(uint32_t) + sizeof(uint16_t)) +
-           (vertices * chunk->stride + triangles * 2) * sizeof(uint32_t) + triangles * sizeof(raster_triangle);
+    return (triangles > RASTER_UNBINNED ? (tiles + 1) * sizeof(uint32_t) : 0) +
+           (vertices * chunk->stride + triangles) * sizeof(uint32_t) + triangles * sizeof(raster_triangle);
 }
 
-/* What one holds that has been through the geometry stages: mostly far less. */
-static size_t ready_bytes(const amb_pass *pass, const raster_chunk *chunk)
+/* What those hold that have been through the geometry stages: mostly far less. */
+static size_t ready_bytes(const amb_pass *pass)
 {
-    size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
-    size_t entries = chunk->binned ? 2 * tiles + chunk->tile_start[tiles] : 0;
-    if (chunk->count == 0 || chunk->large_count > 0)
-        entries += (chunk->count ? chunk->large_count : 0) + tiles;
-    return sizeof *chunk + (size_t)chunk->vertex_count * chunk->stride * sizeof(uint32_t) +
-           (size_t)chunk->triangle_count * sizeof(raster_triangle) + entries * sizeof(uint16_t);
+    size_t bytes = pass->chunk_count * sizeof *pass->chunk;
+    for (int i = 0; i < pass->threads; i++)
+        bytes += raster_arena_bytes(&pass->scratch[i].batch);
+    return bytes;
 }
 
 /* Makes room in the batch for `more` bytes: first by finding out what its chunks really hold, then by playing it. */
@@ -253,9 +142,7 @@ static bool make_room(amb_pass *pass, size_t more)
         return true;
     if (!raster_ready_chunks(pass))
         return false;
-    pass->bytes = 0;
-    for (size_t i = 0; i < pass->chunk_count; i++)
-        pass->bytes += ready_bytes(pass, &pass->chunk[i]);
+    pass->bytes = ready_bytes(pass);
     /* Topping up ever smaller rests would run the geometry stages on ever fewer chunks at once. */
     const size_t enough = pass->batch_bytes - pass->batch_bytes / 4;
     if (pass->chunk_count < RASTER_BATCH_CHUNKS && pass->bytes <= enough && pass->bytes + more <= pass->batch_bytes)
@@ -267,19 +154,12 @@ bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk)
 {
     raster_chunk next = *chunk;
     next.stride = (RASTER_VERTEX_WORDS + (uint32_t)next.draw->state.varying_floats + 3) & ~3u;
-    const size_t more = chunk_bytes(pass, &next), before = pass->chunk_capacity;
+    const size_t more = chunk_bytes(pass, &next);
     if (!make_room(pass, more))
         return false;
     if (!raster_grow(&pass->chunk, &pass->chunk_capacity, pass->chunk_count + 1, sizeof *pass->chunk))
         return false;
-    memset(pass->chunk + before, 0, (pass->chunk_capacity - before) * sizeof *pass->chunk);
-    raster_chunk *slot = &pass->chunk[pass->chunk_count++];
-    slot->draw = next.draw;
-    slot->first = next.first, slot->count = next.count;
-    slot->patch = next.patch, slot->skipped = next.skipped;
-    slot->stride = next.stride;
-    slot->binned = false;
-    slot->vertex_count = slot->triangle_count = slot->large_count = 0;
+    pass->chunk[pass->chunk_count++] = next;
     pass->bytes += more;
     return true;
 }
@@ -369,7 +249,7 @@ amb_status amb_pass_finish(amb_pass **pass, amb_pass_stats *stats, amb_error *er
     if (!pass || !*pass)
         return amb_fail(error, AMB_ERROR_ARGUMENT, "pass: none is given to finish");
     amb_pass *p = *pass;
-    bool done = make_workers(p) && run_draws(p);
+    bool done = raster_make_workers(p) && run_draws(p);
     if (done && !p->target.keep)
         amb_parallel_for(p->context, p->tiles_x * p->tiles_y, clear_job, p);
     if (done)

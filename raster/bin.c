@@ -15,11 +15,26 @@ static tile_box box_of(const raster_triangle *t, unsigned shift)
 
 static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) > RASTER_LARGE_TILES; }
 
+static tile_box box_union(tile_box a, tile_box b)
+{
+    return (tile_box){a.x0 < b.x0 ? a.x0 : b.x0, a.y0 < b.y0 ? a.y0 : b.y0, a.x1 > b.x1 ? a.x1 : b.x1,
+                      a.y1 > b.y1 ? a.y1 : b.y1};
+}
+
+static void set_bounds(raster_chunk *chunk, tile_box all)
+{
+    chunk->tile_x0 = (uint16_t)all.x0, chunk->tile_y0 = (uint16_t)all.y0;
+    chunk->tile_x1 = (uint16_t)all.x1, chunk->tile_y1 = (uint16_t)all.y1;
+}
+
+/* Also finds the tiles that the triangles' boxes touch. */
 static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
 {
     uint32_t large = 0;
+    tile_box all = {UINT16_MAX, UINT16_MAX, 0, 0};
     for (uint32_t i = 0; i < chunk->triangle_count; i++) {
         tile_box b = box_of(&chunk->triangle[i], shift);
+        all = box_union(all, b);
         if (is_large(b)) {
             large++;
             continue;
@@ -28,6 +43,7 @@ static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigne
             for (uint32_t x = b.x0; x <= b.x1; x++)
                 chunk->tile_start[y * (uint32_t)pass->tiles_x + x]++;
     }
+    set_bounds(chunk, all);
     return large;
 }
 
@@ -45,43 +61,26 @@ static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned sh
     }
 }
 
-/* The tiles that the triangles' boxes touch. */
-static void set_bounds(raster_chunk *chunk, unsigned shift)
+/* A chunk of few triangles: every tile in its bounds looks through all of them. */
+static void leave_unbinned(raster_chunk *chunk, unsigned shift)
 {
     tile_box all = {UINT16_MAX, UINT16_MAX, 0, 0};
-    for (uint32_t i = 0; i < chunk->triangle_count; i++) {
-        tile_box b = box_of(&chunk->triangle[i], shift);
-        all.x0 = b.x0 < all.x0 ? b.x0 : all.x0, all.y0 = b.y0 < all.y0 ? b.y0 : all.y0;
-        all.x1 = b.x1 > all.x1 ? b.x1 : all.x1, all.y1 = b.y1 > all.y1 ? b.y1 : all.y1;
-    }
-    chunk->tile_x0 = (uint16_t)all.x0, chunk->tile_y0 = (uint16_t)all.y0;
-    chunk->tile_x1 = (uint16_t)all.x1, chunk->tile_y1 = (uint16_t)all.y1;
-}
-
-/* A chunk of few triangles: every tile in its bounds looks through all of them. */
-static bool leave_unbinned(raster_chunk *chunk)
-{
-    const uint32_t count = chunk->triangle_count;
-    if (!raster_renew(&chunk->large, &chunk->large_capacity, (size_t)count + 1, sizeof *chunk->large))
-        return false;
-    for (uint32_t i = 0; i < count; i++)
-        chunk->large[i] = (uint16_t)i;
-    chunk->large_count = count;
-    return true;
+    for (uint32_t i = 0; i < chunk->triangle_count; i++)
+        all = box_union(all, box_of(&chunk->triangle[i], shift));
+    set_bounds(chunk, all);
 }
 
 void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
 {
     const size_t tiles = (size_t)pass->tiles_x * (size_t)pass->tiles_y;
     const unsigned shift = (unsigned)__builtin_ctz((unsigned)pass->tile_size);
-    set_bounds(chunk, shift);
     chunk->binned = chunk->triangle_count > RASTER_UNBINNED;
     if (!chunk->binned) {
-        if (!leave_unbinned(chunk))
-            goto error;
+        leave_unbinned(chunk, shift);
         return;
     }
-    if (!raster_renew(&chunk->tile_start, &chunk->tile_capacity, tiles + 1, sizeof *chunk->tile_start))
+    chunk->tile_start = raster_take(&scratch->batch, (tiles + 1) * sizeof *chunk->tile_start);
+    if (!chunk->tile_start)
         goto error;
     memset(chunk->tile_start, 0, (tiles + 1) * sizeof *chunk->tile_start);
     uint32_t large = count_entries(pass, chunk, shift), entries = 0;
@@ -90,9 +89,10 @@ void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scrat
         chunk->tile_start[i] = entries;
     }
     chunk->tile_start[tiles] = entries;
-    if (!raster_renew(&chunk->entry, &chunk->entry_capacity, (size_t)entries + 1, sizeof *chunk->entry) ||
-        !raster_renew(&chunk->large, &chunk->large_capacity, (size_t)large + 1, sizeof *chunk->large))
+    chunk->entry = raster_take(&scratch->batch, ((size_t)entries + large) * sizeof *chunk->entry);
+    if (!chunk->entry)
         goto error;
+    chunk->large = chunk->entry + entries;
     chunk->large_count = large;
     place_entries(pass, chunk, shift);
     chunk->large_count = large;
@@ -109,7 +109,7 @@ static void at_tiles(amb_pass *pass, size_t number, bool place)
     const raster_chunk *chunk = &pass->chunk[number];
     const unsigned shift = (unsigned)__builtin_ctz((unsigned)pass->tile_size);
     uint32_t x0 = chunk->tile_x0, y0 = chunk->tile_y0, x1 = chunk->tile_x1, y1 = chunk->tile_y1;
-    bool everywhere = chunk->count == 0 || chunk->large_count > 0; /* in these bounds */
+    bool everywhere = !chunk->binned || chunk->large_count > 0; /* in these bounds */
     if (chunk->count == 0) {
         const raster_draw *d = chunk->draw;
         x0 = (uint32_t)d->x0 >> shift, y0 = (uint32_t)d->y0 >> shift;

@@ -12,6 +12,7 @@
  *   vertex.h      takes vertices to the window
  *   setup_wide.c  drops, culls and bounds the chunk's triangles; setup.c clips (clip.c) those that need it
  *   bin.c         sorts them into the tiles they touch
+ *   memory.c      holds the memory of all that, which a context keeps from pass to pass
  *   target.c      checks and clears attachments; formats.h says what they store
  *   tile_wide.c   plays all chunks of a batch over one tile: coverage, then fragment.h: depth, shading, blending
  *
@@ -32,11 +33,12 @@
 #define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
 #define RASTER_PATCH_WINDOW 16384 /* patches hull-shaded at a time, at most */
 #define RASTER_PATCH_BYTES ((size_t)8 << 20)
-#define RASTER_POLYGON 9         /* vertices of a triangle clipped by six planes */
-#define RASTER_LARGE_TILES 16    /* triangles on more tiles than this are not binned but offered to every tile */
-#define RASTER_MAX_TILE 128      /* pixels, tile edge */
-#define RASTER_BATCH_CHUNKS 2048 /* more would not use their memory again; their numbers fit 16 bits */
-#define RASTER_UNBINNED 64       /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
+#define RASTER_POLYGON 9          /* vertices of a triangle clipped by six planes */
+#define RASTER_LARGE_TILES 16     /* triangles on more tiles than this are not binned but offered to every tile */
+#define RASTER_MAX_TILE 128       /* pixels, tile edge */
+#define RASTER_BATCH_CHUNKS 16384 /* their numbers fit 16 bits */
+#define RASTER_BLOCK_BYTES ((size_t)1 << 20) /* of arenas, at least */
+#define RASTER_UNBINNED 64 /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
 #define RASTER_NOWHERE (1 << 30)              /* beyond every window coordinate */
 #define RASTER_MAX_POINT 4096.0f
@@ -57,8 +59,7 @@ enum {
 };
 
 typedef struct raster_draw {
-    amb_draw state;
-    void *uniforms;        /* owned copy; NULL when there are none */
+    amb_draw state;        /* its uniforms are a copy */
     uint32_t per_instance; /* primitives or patches, as they go in */
     uint64_t triangles;    /* the same, of all instances; 0 for full-screen draws */
     uint32_t chunk_most;   /* primitives of a chunk, before a geometry shader */
@@ -101,16 +102,15 @@ typedef struct raster_chunk {
 
     uint32_t *vertex; /* raster_vertex records of `stride` words each */
     uint32_t stride, vertex_count;
-    size_t vertex_capacity, triangle_capacity;
+    size_t vertex_capacity, triangle_capacity; /* records */
     raster_triangle *triangle;
     uint32_t triangle_count;
     uint32_t primitive;                          /* running number in the draw of the first */
     uint16_t tile_x0, tile_y0, tile_x1, tile_y1; /* tiles that the triangles' boxes touch */
-    bool binned;                                 /* else all triangles are in `large` */
+    bool binned;                                 /* else every tile of them looks at all triangles */
     uint32_t *tile_start;                        /* tiles + 1: where each tile's entries start */
     uint16_t *entry;                             /* triangle numbers, tile by tile, ascending */
     uint16_t *large;                             /* those on many tiles, ascending */
-    size_t tile_capacity, entry_capacity, large_capacity;
     uint32_t large_count;
 } raster_chunk;
 
@@ -130,9 +130,16 @@ static inline raster_triangle raster_make_triangle(const raster_chunk *chunk, co
                              .x0_y0 = (uint32_t)x0 | (uint32_t)y0 << 16};
 }
 
+/* Memory that is taken piece by piece and given back as a whole. */
+typedef struct raster_block raster_block;
+typedef struct raster_arena {
+    raster_block *first, *now;
+} raster_arena;
+
 /* One worker's own memory. */
 typedef struct raster_scratch {
-    uint64_t *lookup; /* index → local vertex: key, generation, local number */
+    raster_arena batch; /* what the batch's chunks hold */
+    uint64_t *lookup;   /* index → local vertex: key, generation, local number */
     uint32_t generation;
     int32_t *index, *instance; /* of the chunk's unique vertices, padded to the lanes */
     int32_t *patch;            /* of the chunk's points: number in the window */
@@ -154,6 +161,7 @@ typedef struct raster_scratch {
     int32_t *packing; /* [wanted][first][lane]: source lanes that bring a block's wanted quads to slots first… */
     int32_t boxes[RASTER_SMALL_BOX * RASTER_SMALL_BOX][RASTER_SMALL_BOX * RASTER_SMALL_BOX];
     /* [width - 1 + RASTER_SMALL_BOX · (height - 1), quads][…]: the quads of a box, x << 8 | y << 16 in pixels */
+    size_t primary_capacity, emitted_capacity, tile_capacity;
     bool failed; /* out of memory */
     amb_pass_stats stats;
 } raster_scratch;
@@ -181,7 +189,7 @@ typedef struct raster_patches {
     int32_t *corners;              /* [group][corner][lane] */
 } raster_patches;
 
-typedef struct raster_spare raster_spare; /* pass.c */
+typedef struct raster_spare raster_spare; /* memory.c */
 
 struct amb_pass {
     const amb_context *context;
@@ -205,8 +213,9 @@ struct amb_pass {
     size_t draw_count, draw_capacity;
 
     raster_chunk *chunk;
-    size_t chunk_count, chunk_capacity; /* of the batch being run; those above keep their memory for the next */
-    raster_spare *spare;                /* where they wait for the context's next pass */
+    size_t chunk_count, chunk_capacity; /* of the batch being run */
+    raster_arena arena;                 /* what lasts as long as the pass */
+    raster_spare *spare;                /* where all this waits for the context's next pass */
     size_t chunks_ready;                /* of those, through the geometry stages */
     size_t bytes;                       /* what the batch's chunks hold, or may come to hold */
     uint32_t *tile_first;               /* tiles + 1: where each tile's chunks start in tile_chunk */
@@ -222,9 +231,23 @@ bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_by
 /* The same for an array whose contents nobody needs: they are not copied. */
 bool raster_renew(void *array, size_t *capacity, size_t needed, size_t element_bytes);
 
+/* `bytes` of the arena's, beginning with a cache line; NULL when out of memory. */
+void *raster_take(raster_arena *arena, size_t bytes);
+/* Gives back all but the first `kept` bytes of a piece, if none was taken since. */
+void raster_trim(raster_arena *arena, const void *piece, size_t bytes, size_t kept);
+/* Gives everything back; the memory stays the arena's. */
+void raster_reset(raster_arena *arena);
+size_t raster_arena_bytes(const raster_arena *arena);
+
+/* The memory that a pass before has left in the context, or none; false when out of memory. */
+bool raster_take_spare(amb_pass *pass);
+void raster_keep_spare(amb_pass *pass);
+/* Workers with all that the pass's draws need; false when out of memory. */
+bool raster_make_workers(amb_pass *pass);
+
 /* Room for that many vertices or triangles in all; false when out of memory. */
-bool raster_reserve_vertices(raster_chunk *chunk, size_t count);
-bool raster_reserve_triangles(raster_chunk *chunk, size_t count);
+bool raster_reserve_vertices(raster_chunk *chunk, raster_scratch *scratch, size_t count);
+bool raster_reserve_triangles(raster_chunk *chunk, raster_scratch *scratch, size_t count);
 /* Floats of a tile in a worker's memory, without the spare block. */
 static inline size_t raster_tile_floats(const amb_pass *pass)
 {
@@ -244,7 +267,6 @@ bool raster_add_chunk(amb_pass *pass, const raster_chunk *chunk);
 bool raster_ready_chunks(amb_pass *pass);
 /* Memory for the largest window that the pass's draws need; false when out of memory. */
 bool raster_make_patches(amb_pass *pass);
-void raster_free_patches(amb_pass *pass);
 /* Shades a draw's patches, window by window, and adds their chunks. */
 bool raster_run_patches(amb_pass *pass, const raster_draw *draw);
 /* Points and corners of a chunk of patches. Sets scratch->failed. */

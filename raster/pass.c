@@ -1,42 +1,10 @@
 /* A pass: the checked record of a target and its draws. Running it is batch.c's part. */
-#include "core/spare.h"
 #include "raster/internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
 #define MAX_TRIANGLES ((uint64_t)INT32_MAX) /* of one draw: their running numbers are ints */
-
-bool raster_grow(void *array, size_t *capacity, size_t needed, size_t element_bytes)
-{
-    if (needed <= *capacity)
-        return true;
-    size_t wanted = *capacity > 0 ? *capacity : needed; /* many arrays never grow */
-    while (wanted < needed)
-        wanted *= 2;
-    if (wanted > SIZE_MAX / element_bytes)
-        return false;
-    void *old;
-    memcpy(&old, array, sizeof old);
-    void *grown = realloc(old, wanted * element_bytes);
-    if (!grown)
-        return false;
-    memcpy(array, &grown, sizeof grown);
-    *capacity = wanted;
-    return true;
-}
-
-bool raster_renew(void *array, size_t *capacity, size_t needed, size_t element_bytes)
-{
-    void *old, *none = NULL;
-    if (needed <= *capacity)
-        return true;
-    memcpy(&old, array, sizeof old);
-    free(old);
-    memcpy(array, &none, sizeof none);
-    *capacity = 0;
-    return raster_grow(array, capacity, needed, element_bytes);
-}
 
 /* The largest power of two g with g · half ≤ the guard band's reach: the product with any w is then exact. */
 static float guard_factor(int size)
@@ -45,54 +13,6 @@ static float guard_factor(int size)
     while (2.0 * g * half <= RASTER_GUARD_PIXELS)
         g *= 2.0;
     return (float)g;
-}
-
-static void free_chunk(raster_chunk *chunk)
-{
-    free(chunk->vertex);
-    free(chunk->triangle);
-    free(chunk->tile_start);
-    free(chunk->entry);
-    free(chunk->large);
-}
-
-/* Chunks with their arrays, between two passes of a context. */
-struct raster_spare {
-    raster_chunk *chunk;
-    size_t count;
-};
-
-static void release_chunks(void *block)
-{
-    raster_spare *spare = block;
-    for (size_t i = 0; i < spare->count; i++)
-        free_chunk(&spare->chunk[i]);
-    free(spare->chunk);
-    free(spare);
-}
-
-/* The chunks of a pass before, or none; false when out of memory. */
-static bool take_chunks(amb_pass *pass)
-{
-    pass->spare = amb_spare_take(pass->context);
-    if (!pass->spare)
-        pass->spare = calloc(1, sizeof *pass->spare);
-    if (!pass->spare)
-        return false;
-    pass->chunk = pass->spare->chunk;
-    pass->chunk_capacity = pass->spare->count;
-    return true;
-}
-
-static void keep_chunks(amb_pass *pass)
-{
-    if (!pass->spare)
-        return;
-    *pass->spare = (raster_spare){pass->chunk, pass->chunk_capacity};
-    if (pass->chunk)
-        amb_spare_keep(pass->context, pass->spare, release_chunks);
-    else
-        free(pass->spare);
 }
 
 amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
@@ -121,7 +41,8 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
     pass->tile_first = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y + 1, sizeof *pass->tile_first);
     if (pass->samples > 1)
         pass->tile_store = calloc((size_t)pass->tiles_x * (size_t)pass->tiles_y, sizeof *pass->tile_store);
-    if (!take_chunks(pass) || !pass->tile_started || !pass->tile_first || (pass->samples > 1 && !pass->tile_store)) {
+    if (!raster_take_spare(pass) || !pass->tile_started || !pass->tile_first ||
+        (pass->samples > 1 && !pass->tile_store)) {
         status = amb_fail(error, AMB_ERROR_MEMORY, "pass: out of memory for %d×%d tiles", pass->tiles_x, pass->tiles_y);
         goto error;
     }
@@ -385,48 +306,23 @@ amb_status amb_pass_draw(amb_pass *pass, const amb_draw *draw, amb_error *error)
         return status;
     if (!raster_grow(&pass->draw, &pass->draw_capacity, pass->draw_count + 1, sizeof *pass->draw))
         return amb_fail(error, AMB_ERROR_MEMORY, "draw '%s': out of memory", label_of(draw));
-    raster_draw record = {.state = *draw};
+    raster_draw *record = &pass->draw[pass->draw_count];
+    *record = (raster_draw){.state = *draw};
     if (draw->uniforms) {
-        size_t bytes = (draw->uniforms_size + 63) & ~(size_t)63;
-        record.uniforms = bytes >= draw->uniforms_size ? aligned_alloc(64, bytes) : NULL;
-        if (!record.uniforms)
+        void *uniforms = raster_take(&pass->arena, draw->uniforms_size);
+        if (!uniforms)
             return amb_fail(error, AMB_ERROR_MEMORY, "draw '%s': out of memory for %zu bytes of uniforms",
                             label_of(draw), draw->uniforms_size);
-        memcpy(record.uniforms, draw->uniforms, draw->uniforms_size);
+        record->state.uniforms = memcpy(uniforms, draw->uniforms, draw->uniforms_size);
     }
-    set_scissor(pass, &record);
-    set_primitives(&record);
-    record.state.uniforms = record.uniforms;
+    set_scissor(pass, record);
+    set_primitives(record);
     if (!pass->depth.image && !pass->depth.texture)
-        record.state.depth_compare = AMB_ALWAYS;
+        record->state.depth_compare = AMB_ALWAYS;
     else if (draw->depth_compare == AMB_COMPARE_DEFAULT)
-        record.state.depth_compare = record.screen ? AMB_LESS_EQUAL : AMB_LESS;
-    pass->draw[pass->draw_count++] = record;
+        record->state.depth_compare = record->screen ? AMB_LESS_EQUAL : AMB_LESS;
+    pass->draw_count++;
     return AMB_OK;
-}
-
-static void free_scratch(raster_scratch *scratch)
-{
-    free(scratch->lookup);
-    free(scratch->index);
-    free(scratch->instance);
-    free(scratch->clip_x);
-    free(scratch->code);
-    free(scratch->corner_memory);
-    free(scratch->other_memory);
-    free(scratch->group);
-    free(scratch->tile);
-    free(scratch->packing);
-    free(scratch->patch);
-    free(scratch->u);
-    free(scratch->seen);
-    for (int i = 0; scratch->patterns && i < RASTER_PATTERN_SLOTS; i++)
-        raster_free_pattern(&scratch->patterns->slot[i]);
-    free(scratch->patterns);
-    free(scratch->constants);
-    free(scratch->corners);
-    free(scratch->primary);
-    free(scratch->emitted);
 }
 
 void amb_pass_close(amb_pass **pass)
@@ -434,17 +330,10 @@ void amb_pass_close(amb_pass **pass)
     if (!pass || !*pass)
         return;
     amb_pass *p = *pass;
-    for (size_t i = 0; i < p->draw_count; i++)
-        free(p->draw[i].uniforms);
-    keep_chunks(p);
-    for (int i = 0; i < p->threads; i++)
-        free_scratch(&p->scratch[i]);
+    raster_keep_spare(p);
     for (int i = 0; p->tile_store && i < p->tiles_x * p->tiles_y; i++)
         free(p->tile_store[i]);
     free(p->tile_store);
-    raster_free_patches(p);
-    free(p->draw);
-    free(p->scratch);
     free(p->tile_started);
     free(p->tile_first);
     free(p->tile_chunk);

@@ -41,22 +41,13 @@ bool raster_make_patches(amb_pass *pass)
     }
     if (patches == 0)
         return true;
-    pass->patches.factors = malloc(patches * sizeof *pass->patches.factors);
-    pass->patches.points = malloc(patches * sizeof *pass->patches.points);
-    pass->patches.primitives = malloc(patches * sizeof *pass->patches.primitives);
-    pass->patches.constants = aligned_alloc(64, (floats + 16) * sizeof *pass->patches.constants); /* never none */
-    pass->patches.corners = aligned_alloc(64, corners * sizeof *pass->patches.corners);
+    pass->patches.factors = raster_take(&pass->arena, patches * sizeof *pass->patches.factors);
+    pass->patches.points = raster_take(&pass->arena, patches * sizeof *pass->patches.points);
+    pass->patches.primitives = raster_take(&pass->arena, patches * sizeof *pass->patches.primitives);
+    pass->patches.constants = raster_take(&pass->arena, floats * sizeof *pass->patches.constants);
+    pass->patches.corners = raster_take(&pass->arena, corners * sizeof *pass->patches.corners);
     return pass->patches.factors && pass->patches.points && pass->patches.primitives && pass->patches.constants &&
            pass->patches.corners;
-}
-
-void raster_free_patches(amb_pass *pass)
-{
-    free(pass->patches.factors);
-    free(pass->patches.points);
-    free(pass->patches.primitives);
-    free(pass->patches.constants);
-    free(pass->patches.corners);
 }
 
 static void hull_job(void *user, int index, int thread)

@@ -83,8 +83,8 @@ static bool clip_triangle(const amb_pass *pass, raster_chunk *chunk, raster_scra
     }
     raster_clip(&polygon, codes, (double)pass->guard_x, (double)pass->guard_y);
     scratch->stats.triangles_clipped++;
-    if (!raster_reserve_vertices(chunk, (size_t)chunk->vertex_count + RASTER_POLYGON) ||
-        !raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + RASTER_POLYGON))
+    if (!raster_reserve_vertices(chunk, scratch, (size_t)chunk->vertex_count + RASTER_POLYGON) ||
+        !raster_reserve_triangles(chunk, scratch, (size_t)chunk->triangle_count + RASTER_POLYGON))
         return false;
     uint32_t number[RASTER_POLYGON];
     for (int i = 0; i < polygon.count; i++) {
@@ -112,7 +112,7 @@ void raster_setup_one(const amb_pass *pass, raster_chunk *chunk, raster_scratch 
         scratch->stats.triangles_culled++;
     else if (any != 0)
         scratch->failed |= !clip_triangle(pass, chunk, scratch, corner, any);
-    else if (raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + 1))
+    else if (raster_reserve_triangles(chunk, scratch, (size_t)chunk->triangle_count + 1))
         add_triangle(pass, chunk, scratch, corner, corner[3]);
     else
         scratch->failed = true;

@@ -92,8 +92,8 @@ void raster_setup_lines(const amb_pass *pass, raster_chunk *chunk, raster_scratc
     for (uint32_t n = 0; n < scratch->corner_count; n++) {
         const uint32_t v[3] = {scratch->corner[0][n], scratch->corner[1][n], scratch->corner[2][n]};
         uint32_t primitive = scratch->corner[3][n];
-        if (!raster_reserve_vertices(chunk, (size_t)chunk->vertex_count + 6) ||
-            !raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + 3)) {
+        if (!raster_reserve_vertices(chunk, scratch, (size_t)chunk->vertex_count + 6) ||
+            !raster_reserve_triangles(chunk, scratch, (size_t)chunk->triangle_count + 3)) {
             scratch->failed = true;
             return;
         }

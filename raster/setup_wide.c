@@ -97,7 +97,7 @@ static void setup_group(const amb_pass *pass, raster_chunk *chunk, raster_scratc
         append(chunk, kept_bits & before, words);
         kept_bits &= ~before;
         raster_setup_one(pass, chunk, scratch, first + (uint32_t)lane);
-        if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + AMB_LANES)) {
+        if (!raster_reserve_triangles(chunk, scratch, (size_t)chunk->triangle_count + AMB_LANES)) {
             scratch->failed = true;
             return;
         }
@@ -117,7 +117,7 @@ void raster_setup(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scr
             scratch->corner[k][i] = scratch->corner[k][count - 1];
     for (uint32_t first = 0; first < count && !scratch->failed; first += AMB_LANES) {
         uint32_t left = count - first;
-        if (!raster_reserve_triangles(chunk, (size_t)chunk->triangle_count + AMB_LANES)) {
+        if (!raster_reserve_triangles(chunk, scratch, (size_t)chunk->triangle_count + AMB_LANES)) {
             scratch->failed = true;
             return;
         }

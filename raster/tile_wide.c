@@ -256,19 +256,24 @@ static inline void play_group(const raster_tile *tile, raster_shading *s, raster
     }
 }
 
-/* The chunk's binned and large triangles, merged back into their order. */
-static void play_chunk(raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk, int number)
+/* A chunk's triangles, whichever tiles they touch. */
+static void play_unbinned(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk)
 {
-    const uint16_t *binned = chunk->binned ? chunk->entry + chunk->tile_start[number] : NULL;
-    const uint16_t *binned_end = chunk->binned ? chunk->entry + chunk->tile_start[number + 1] : NULL;
+    const int32_t count = (int32_t)chunk->triangle_count;
+    for (int32_t first = 0; first < count; first += AMB_LANES) {
+        int32_t index[AMB_LANES];
+        i_store(index, i_min(i_lane_index() + first, i_set(count - 1)));
+        play_group(tile, s, queue, chunk, index, count - first < AMB_LANES ? count - first : AMB_LANES);
+    }
+}
+
+/* The chunk's binned and large triangles, merged back into their order. */
+static void play_binned(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk,
+                        int number)
+{
+    const uint16_t *binned = chunk->entry + chunk->tile_start[number];
+    const uint16_t *binned_end = chunk->entry + chunk->tile_start[number + 1];
     const uint16_t *large = chunk->large, *large_end = chunk->large + chunk->large_count;
-    s->chunk = chunk;
-    s->draw = &chunk->draw->state;
-    if (!set_clip(tile, chunk->draw))
-        return;
-    if (queue->draw != s->draw)
-        flush_queue(tile, queue);
-    queue->draw = s->draw;
     while (binned < binned_end || large < large_end) {
         int32_t index[AMB_LANES];
         int count = 0;
@@ -280,6 +285,21 @@ static void play_chunk(raster_tile *tile, raster_shading *s, raster_queue *queue
             index[i] = index[0];
         play_group(tile, s, queue, chunk, index, count);
     }
+}
+
+static void play_chunk(raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk, int number)
+{
+    s->chunk = chunk;
+    s->draw = &chunk->draw->state;
+    if (!set_clip(tile, chunk->draw))
+        return;
+    if (queue->draw != s->draw)
+        flush_queue(tile, queue);
+    queue->draw = s->draw;
+    if (chunk->binned)
+        play_binned(tile, s, queue, chunk, number);
+    else
+        play_unbinned(tile, s, queue, chunk);
 }
 
 /* Small draws' chunks lie far apart: what the tile will read of the coming ones is asked for in time. */
@@ -295,7 +315,6 @@ static inline void prefetch_chunks(const amb_pass *pass, const uint16_t *next, c
             __builtin_prefetch(state + line);
         if (chunk->count == 0)
             return;
-        __builtin_prefetch(chunk->large);
         for (uint32_t i = 0; i < 8; i++) {
             __builtin_prefetch((const char *)chunk->triangle + 64 * i);
             __builtin_prefetch((const char *)chunk->vertex + 64 * i);
