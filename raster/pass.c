@@ -1,7 +1,6 @@
 /* A pass: the checked record of a target and its draws. Running it is batch.c's part. */
 #include "raster/internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 #define MAX_TRIANGLES ((uint64_t)INT32_MAX) /* of one draw: their running numbers are ints */
@@ -109,15 +108,18 @@ static amb_status check_stencil(const amb_pass *pass, const amb_draw *d, amb_err
     return status;
 }
 
+static const char *const blend_names[] = {"blend[0]",  "blend[1]",  "blend[2]",  "blend[3]", "blend[4]",  "blend[5]",
+                                          "blend[6]",  "blend[7]",  "blend[8]",  "blend[9]", "blend[10]", "blend[11]",
+                                          "blend[12]", "blend[13]", "blend[14]", "blend[15]"};
+_Static_assert(sizeof blend_names / sizeof *blend_names == AMB_MAX_TARGETS, "a name for every target");
+
 static amb_status check_output(const amb_pass *pass, const amb_draw *d, amb_error *error)
 {
     amb_status status = check_choice(d, "cull", (int)d->cull, AMB_CULL_FRONT, error);
     if (status == AMB_OK)
         status = check_choice(d, "depth_compare", (int)d->depth_compare, AMB_ALWAYS, error);
     for (int i = 0; i < pass->target_count && status == AMB_OK; i++) {
-        char field[16];
-        snprintf(field, sizeof field, "blend[%d]", i);
-        status = check_choice(d, field, (int)d->blend[i], AMB_BLEND_EQUATION, error);
+        status = check_choice(d, blend_names[i], (int)d->blend[i], AMB_BLEND_EQUATION, error);
         if (status == AMB_OK && d->blend[i] == AMB_BLEND_EQUATION)
             status = check_equation(pass, d, i, error);
     }
