@@ -37,11 +37,8 @@ static bool set_up(amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
     return !scratch->failed;
 }
 
-static void chunk_job(void *user, int index, int thread)
+static void run_chunk(amb_pass *pass, raster_chunk *chunk, raster_scratch *scratch)
 {
-    amb_pass *pass = user;
-    raster_chunk *chunk = &pass->chunk[pass->chunks_ready + (size_t)index];
-    raster_scratch *scratch = &pass->scratch[thread];
     const amb_isa isa = amb_context_isa(pass->context);
     if (chunk->count == 0)
         return;
@@ -72,6 +69,15 @@ static void chunk_job(void *user, int index, int thread)
     raster_lap(timed, &scratch->stats, AMB_STAGE_BINS, lap);
 }
 
+/* Some neighbouring chunks: those of small draws are less work than handing out a job. */
+static void chunks_job(void *user, int index, int thread)
+{
+    amb_pass *pass = user;
+    const size_t first = pass->chunks_ready + (size_t)index * pass->job_chunks, left = pass->chunk_count - first;
+    for (size_t i = 0; i < pass->job_chunks && i < left; i++)
+        run_chunk(pass, &pass->chunk[first + i], &pass->scratch[thread]);
+}
+
 static void tile_job(void *user, int index, int thread)
 {
     amb_pass *pass = user;
@@ -92,7 +98,9 @@ static bool any_failed(const amb_pass *pass)
 
 bool raster_ready_chunks(amb_pass *pass)
 {
-    amb_parallel_for(pass->context, (int)(pass->chunk_count - pass->chunks_ready), chunk_job, pass);
+    const size_t waiting = pass->chunk_count - pass->chunks_ready;
+    pass->job_chunks = waiting / (RASTER_THREAD_JOBS * (size_t)pass->threads) + 1;
+    amb_parallel_for(pass->context, (int)((waiting + pass->job_chunks - 1) / pass->job_chunks), chunks_job, pass);
     pass->chunks_ready = pass->chunk_count;
     return !any_failed(pass);
 }

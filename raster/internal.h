@@ -38,6 +38,7 @@
 #define RASTER_MAX_TILE 128       /* pixels, tile edge */
 #define RASTER_BATCH_CHUNKS 16384 /* their numbers fit 16 bits */
 #define RASTER_BLOCK_BYTES ((size_t)1 << 20) /* of arenas, at least */
+#define RASTER_THREAD_JOBS 32                /* of the geometry stages, a thread, at most: enough for an even load */
 #define RASTER_UNBINNED 64 /* triangles of a chunk that is not worth bins: each of its tiles looks at all */
 #define RASTER_BATCH_BYTES ((size_t)24 << 20) /* for two threads; half of it more for each further one */
 #define RASTER_NOWHERE (1 << 30)              /* beyond every window coordinate */
@@ -216,6 +217,7 @@ struct amb_pass {
     size_t chunk_count, chunk_capacity; /* of the batch being run */
     raster_arena arena;                 /* what lasts as long as the pass */
     raster_spare *spare;                /* where all this waits for the context's next pass */
+    size_t job_chunks;                  /* chunks that a job takes through the geometry stages */
     size_t chunks_ready;                /* of those, through the geometry stages */
     size_t bytes;                       /* what the batch's chunks hold, or may come to hold */
     uint32_t *tile_first;               /* tiles + 1: where each tile's chunks start in tile_chunk */
