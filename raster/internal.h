@@ -301,7 +301,8 @@ void raster_clip(raster_polygon *polygon, unsigned codes, double guard_x, double
 /* The same for the segment from vertex 0 to vertex 1; false when nothing is left. */
 bool raster_clip_line(raster_polygon *line, unsigned codes, double guard_x, double guard_y);
 
-/* The tests' knobs; pixels depend on neither. tile_size: 16, 32, 64 or 128 pixels; batch_bytes: what a batch may hold
+/* The tests' knobs; pixels depend on neither. tile_size: 16, 32, 64 or 128 pixels, 0: what
+ * fits best; batch_bytes: what a batch may hold
  * before its tiles are played (0: at least one chunk). */
 amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
                              amb_pass **out, amb_error *error);

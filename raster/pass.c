@@ -14,6 +14,17 @@ static float guard_factor(int size)
     return (float)g;
 }
 
+/* Tiles that fit the nearer caches with all their samples. Larger ones where there is depth alone leave more triangles
+ * a tile to play together; but every thread needs some. */
+static int choose_tile(const amb_pass *pass)
+{
+    const int large = RASTER_MAX_TILE;
+    if (pass->samples > 1)
+        return RASTER_TILE / 2;
+    const bool enough = (pass->width / large) * (pass->height / large) >= 8 * amb_context_threads(pass->context);
+    return pass->planes == 1 && enough ? large : RASTER_TILE;
+}
+
 amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
                              amb_pass **out, amb_error *error)
 {
@@ -30,7 +41,7 @@ amb_status raster_pass_begin(const amb_context *context, const amb_target *targe
     amb_status status = raster_prepare_target(pass, error);
     if (status != AMB_OK)
         goto error;
-    pass->tile_size = tile_size;
+    pass->tile_size = tile_size = tile_size > 0 ? tile_size : choose_tile(pass);
     pass->batch_bytes = batch_bytes;
     pass->tiles_x = (pass->width + tile_size - 1) / tile_size;
     pass->tiles_y = (pass->height + tile_size - 1) / tile_size;
@@ -55,9 +66,7 @@ error:
 amb_status amb_pass_begin(const amb_context *context, const amb_target *target, amb_pass **out, amb_error *error)
 {
     size_t bytes = context ? RASTER_BATCH_BYTES / 2 * (size_t)amb_context_threads(context) : 0;
-    int tile = target && target->samples > 1 ? RASTER_TILE / 2 : RASTER_TILE; /* many samples must fit the cache too */
-    return raster_pass_begin(context, target, tile, bytes > RASTER_BATCH_BYTES ? bytes : RASTER_BATCH_BYTES, out,
-                             error);
+    return raster_pass_begin(context, target, 0, bytes > RASTER_BATCH_BYTES ? bytes : RASTER_BATCH_BYTES, out, error);
 }
 
 /* "draw 'label': " for messages. */
