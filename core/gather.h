@@ -24,18 +24,31 @@ AMB_INLINE __m128i load_quad(const uint32_t *p) { return _mm_loadu_si128((const 
 #define LANES_FROM_BLOCKS_(b0, b1, b2, b3) \
     _mm512_inserti32x4(_mm512_inserti32x4(_mm512_inserti32x4(_mm512_castsi128_si512(b0), b1, 1), b2, 2), b3, 3)
 #define LANES_SHUFFLE_(a, b, control) ((u32x)_mm512_shuffle_ps(_mm512_castsi512_ps(a), _mm512_castsi512_ps(b), control))
-#define LANES_UNPACK_(part, a, b) _mm512_unpack##part(a, b)
+#define LANES_(operation) _mm512_##operation
 #define LANES_INT_ __m512i
 #elif AMB_X86 && AMB_LANES == 8
 #define LANES_FROM_BLOCKS_(b0, b1, b2, b3) _mm256_inserti128_si256(_mm256_castsi128_si256(b0), b1, 1)
 #define LANES_SHUFFLE_(a, b, control) ((u32x)_mm256_shuffle_ps(_mm256_castsi256_ps(a), _mm256_castsi256_ps(b), control))
-#define LANES_UNPACK_(part, a, b) _mm256_unpack##part(a, b)
+#define LANES_(operation) _mm256_##operation
 #define LANES_INT_ __m256i
 #elif AMB_X86
 #define LANES_FROM_BLOCKS_(b0, b1, b2, b3) b0
 #define LANES_SHUFFLE_(a, b, control) ((u32x)_mm_shuffle_ps(_mm_castsi128_ps(a), _mm_castsi128_ps(b), control))
-#define LANES_UNPACK_(part, a, b) _mm_unpack##part(a, b)
+#define LANES_(operation) _mm_##operation
 #define LANES_INT_ __m128i
+#endif
+
+#if AMB_X86
+/* Register i of four holds the words of lane 4j + i in its block j; word[k] gets the k-th ones, in the lanes' order. */
+AMB_INLINE void transpose_blocks(LANES_INT_ r0, LANES_INT_ r1, LANES_INT_ r2, LANES_INT_ r3, u32x word[4])
+{
+    LANES_INT_ a = LANES_(unpacklo_epi32)(r0, r1), b = LANES_(unpacklo_epi32)(r2, r3);
+    LANES_INT_ c = LANES_(unpackhi_epi32)(r0, r1), d = LANES_(unpackhi_epi32)(r2, r3);
+    word[0] = (u32x)LANES_(unpacklo_epi64)(a, b);
+    word[1] = (u32x)LANES_(unpackhi_epi64)(a, b);
+    word[2] = (u32x)LANES_(unpacklo_epi64)(c, d);
+    word[3] = (u32x)LANES_(unpackhi_epi64)(c, d);
+}
 #endif
 
 /* word[k] = data[index + k], k = 0, 1 */
@@ -68,12 +81,7 @@ AMB_INLINE void fetch_4(const uint32_t *data, i32x index, u32x word[4])
     LANES_INT_ r2 = LANES_FROM_BLOCKS_(QUAD_(2, 0), QUAD_(2, 1), QUAD_(2, 2), QUAD_(2, 3));
     LANES_INT_ r3 = LANES_FROM_BLOCKS_(QUAD_(3, 0), QUAD_(3, 1), QUAD_(3, 2), QUAD_(3, 3));
 #undef QUAD_
-    LANES_INT_ a = LANES_UNPACK_(lo_epi32, r0, r1), b = LANES_UNPACK_(lo_epi32, r2, r3);
-    LANES_INT_ c = LANES_UNPACK_(hi_epi32, r0, r1), d = LANES_UNPACK_(hi_epi32, r2, r3);
-    word[0] = (u32x)LANES_UNPACK_(lo_epi64, a, b);
-    word[1] = (u32x)LANES_UNPACK_(hi_epi64, a, b);
-    word[2] = (u32x)LANES_UNPACK_(lo_epi64, c, d);
-    word[3] = (u32x)LANES_UNPACK_(hi_epi64, c, d);
+    transpose_blocks(r0, r1, r2, r3, word);
 #else
     for (int k = 0; k < 4; k++)
         word[k] = u_gather(data, index + k);

@@ -90,12 +90,11 @@ static size_t row_pitch(size_t texels, size_t words)
 /* Places every level; LIMIT when lanes could not index the words with 32 bits. */
 static amb_status lay_out(amb_texture *t, amb_error *error)
 {
-    bool cube = t->info.kind == AMB_TEXTURE_CUBE;
     size_t texels = 0, words = (size_t)storage_words(t->storage);
     for (int l = 0; l < t->info.levels; l++) {
         size_t width = (size_t)level_size(t->info.width, l), height = (size_t)level_size(t->info.height, l);
-        size_t slices = (size_t)level_slices(&t->info, l) + (t->info.kind == AMB_TEXTURE_3D);
-        size_t pad = cube ? 2 : 1, pitch = row_pitch(width + pad, words), slice = pitch * (height + pad);
+        size_t slices = (size_t)(level_slices(&t->info, l) + 2 * slice_border(&t->info));
+        size_t pitch = row_pitch(width + 2, words), slice = pitch * (height + 2);
         if ((texels + slice * slices) * words >= INT32_MAX)
             return amb_fail(error, AMB_ERROR_LIMIT,
                             "texture: %d x %d x %d texels take more than 8 GiB; use a smaller size or format",

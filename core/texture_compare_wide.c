@@ -65,16 +65,16 @@ AMB_INLINE f32x bilinear(const f32x r[4], f32x fx, f32x fy)
 static f32x compare_level_2d(const comparison *c, const amb_wrap wrap[3], v2x uv, i32x layer, i32x level)
 {
     levelx l = level_at(c->texture, level);
-    i32x base = l.base + layer * l.slice, x, y;
+    wrapped u = wrap_coordinate(uv.x, wrap[0]), v = wrap_coordinate(uv.y, wrap[1]);
     f32x result[4];
+    l.base += layer * l.slice;
     if (c->filter == AMB_NEAREST) {
-        x = wrap_nearest(uv.x, l.width, wrap[0]), y = wrap_nearest(uv.y, l.height, wrap[1]);
-        compare_texels(c, base + y * l.pitch + x, l.pitch, result);
+        compare_texels(c, place_texel(&l, &u, &v), l.pitch, result);
         return result[0];
     }
-    f32x fx = wrap_linear(uv.x, l.width, wrap[0], &x), fy = wrap_linear(uv.y, l.height, wrap[1], &y);
-    compare_texels(c, base + y * l.pitch + x, l.pitch, result);
-    return bilinear(result, fx, fy);
+    quad_place at = place_quad(&l, &u, &v);
+    compare_texels(c, at.texel, at.pitch, result);
+    return bilinear(result, at.fx, at.fy);
 }
 
 f32x amb_compare_2d_array_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer,
@@ -85,9 +85,9 @@ f32x amb_compare_2d_array_lod(const amb_texture *texture, const amb_sampler *sam
     uv = v2x_of(finite_or_zero(uv.x), finite_or_zero(uv.y));
     layer = clamp_layer(texture, layer);
     f32x near = compare_level_2d(&c, sampler->wrap, uv, layer, levels.near);
-    if (!m_any(levels.blend > 0.0f))
+    if (!levels.two)
         return near;
-    f32x far = compare_level_2d(&c, sampler->wrap, uv, layer, levels.far);
+    f32x far = compare_level_2d(&c, sampler->wrap, uv, layer, next_level(texture, levels.near));
     return f_sel(levels.blend > 0.0f, f_lerp(near, far, levels.blend), near);
 }
 
@@ -111,20 +111,19 @@ AMB_INLINE void mend_corners(maskx left, maskx right, maskx top, maskx bottom, f
 static f32x compare_level_cube(const comparison *c, const cube_point *p, i32x level)
 {
     levelx l = level_at(c->texture, level);
-    i32x base = l.base + p->face * l.slice;
-    f32x x = p->u * l.width, y = p->v * l.width, result[4];
+    const wrapped u = {p->u, false}, v = {p->v, false};
+    f32x result[4];
+    l.base += p->face * l.slice;
     if (c->filter == AMB_NEAREST) {
-        f32x last = l.width - 1.0f;
-        i32x column = small_to_i(f_min(x, last)) + 1, row = small_to_i(f_min(y, last)) + 1;
-        compare_texels(c, base + row * l.pitch + column, l.pitch, result);
+        compare_texels(c, place_texel(&l, &u, &v), l.pitch, result);
         return result[0];
     }
-    x = x + 0.5f; /* minus half a texel for centres, plus one for the border */
-    y = y + 0.5f;
-    f32x left = f_floor(x), above = f_floor(y);
-    compare_texels(c, base + small_to_i(above) * l.pitch + small_to_i(left), l.pitch, result);
-    mend_corners(left == 0.0f, left == l.width, above == 0.0f, above == l.width, result);
-    return bilinear(result, x - left, y - above);
+    quad_place at = place_quad(&l, &u, &v);
+    i32x x, y, last = small_to_i(l.width);
+    place_between(&u, l.width, &x), place_between(&v, l.width, &y);
+    compare_texels(c, at.texel, at.pitch, result);
+    mend_corners(x == 0, x == last, y == 0, y == last, result);
+    return bilinear(result, at.fx, at.fy);
 }
 
 f32x amb_compare_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x reference,
@@ -134,8 +133,8 @@ f32x amb_compare_cube_lod(const amb_texture *texture, const amb_sampler *sampler
     lod_levels levels = pick_levels(texture, sampler, lod);
     cube_point p = point_on_cube(direction);
     f32x near = compare_level_cube(&c, &p, levels.near);
-    if (!m_any(levels.blend > 0.0f))
+    if (!levels.two)
         return near;
-    f32x far = compare_level_cube(&c, &p, levels.far);
+    f32x far = compare_level_cube(&c, &p, next_level(texture, levels.near));
     return f_sel(levels.blend > 0.0f, f_lerp(near, far, levels.blend), near);
 }

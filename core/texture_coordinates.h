@@ -1,8 +1,9 @@
-/* From coordinates to texels: wrapping, layers, cube faces. Shared by the samplers (texture*_wide.c). */
+/* From coordinates to texels: wrapping, layers, cube faces. Texels are counted from the border: 0 is the texel before the
+ * first. Shared by the samplers (texture*_wide.c). */
 #ifndef AMBIANCE_CORE_TEXTURE_COORDINATES_H
 #define AMBIANCE_CORE_TEXTURE_COORDINATES_H
 
-#include "core/texture_fetch.h"
+#include "core/texture_filter.h"
 
 /* ---- wrapping --------------------------------------------------------------------------------------------------- */
 
@@ -23,34 +24,33 @@ AMB_INLINE wrapped wrap_coordinate(f32x u, amb_wrap wrap)
     return (wrapped){u, true};
 }
 
-/* The texel to the left, from 0 to size-1, and the fraction to the next one. */
-AMB_INLINE f32x texel_left_of(const wrapped *w, f32x size, i32x *texel)
+/* The first of the two texels that a coordinate lies between, and the fraction to the second. */
+AMB_INLINE f32x place_between(const wrapped *w, f32x size, i32x *texel)
 {
-    f32x t = w->u * size - 0.5f;
+    f32x t = w->u * size + 0.5f; /* half a texel less for centres, one more for the border */
     if (w->clamped)
-        t = f_clamp(t, f_set(0.0f), size - 1.0f);
-    f32x left = f_floor(t);
-    i32x i = small_to_i(left);
-    *texel = i + ((i >> 31) & small_to_i(size)); /* left of the first comes the last */
-    return t - left;
+        t = f_clamp(t, f_set(1.0f), size);
+    *texel = small_to_i(t);
+    return t - i_to_f(*texel);
 }
 
-AMB_INLINE f32x wrap_linear(f32x u, f32x size, amb_wrap wrap, i32x *texel)
+/* The texel that contains a coordinate. */
+AMB_INLINE i32x place_nearest(const wrapped *w, f32x size)
 {
-    wrapped w = wrap_coordinate(u, wrap);
-    return texel_left_of(&w, size, texel);
+    return small_to_i(f_clamp(w->u * size, f_set(0.0f), size - 1.0f)) + 1;
 }
 
-/* The texel that contains coordinate u. */
-AMB_INLINE i32x wrap_nearest(f32x u, f32x size, amb_wrap wrap)
+/* A whole level of 2D or of one face. */
+AMB_INLINE quad_place place_quad(const levelx *l, const wrapped *u, const wrapped *v)
 {
-    if (wrap == AMB_REPEAT) {
-        u = u - f_floor(u);
-    } else if (wrap == AMB_MIRROR) {
-        f32x pair = u * 0.5f;
-        u = 1.0f - f_abs(1.0f - 2.0f * (pair - f_floor(pair)));
-    }
-    return small_to_i(f_clamp(u * size, f_set(0.0f), size - 1.0f));
+    i32x x, y;
+    f32x fx = place_between(u, l->width, &x), fy = place_between(v, l->height, &y);
+    return (quad_place){(l->base + x) + y * l->pitch, l->pitch, fx, fy};
+}
+
+AMB_INLINE i32x place_texel(const levelx *l, const wrapped *u, const wrapped *v)
+{
+    return (l->base + place_nearest(u, l->width)) + place_nearest(v, l->height) * l->pitch;
 }
 
 /* A layer that exists. */

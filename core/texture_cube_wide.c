@@ -17,43 +17,41 @@ typedef struct {
     const amb_texture *texture;
     const amb_sampler *sampler;
     v3x direction, axis;
-    f32x lod, taps;
+    detailx detail;
+    f32x taps;
     int most_taps;
 } request_cube;
 
-/* Faces begin with their border: half a texel less for centres, and one more for the border. */
-AMB_INLINE quad_place place_cube(const levelx *l, const cube_point *p)
+AMB_INLINE levelx level_of_face(const amb_texture *t, i32x level, i32x face)
 {
-    f32x x = p->u * l->width + 0.5f, y = p->v * l->width + 0.5f, left = f_floor(x), above = f_floor(y);
-    i32x texel = l->base + p->face * l->slice + small_to_i(above) * l->pitch + small_to_i(left);
-    return (quad_place){texel, l->pitch, x - left, y - above};
+    levelx l = level_at(t, level);
+    l.base += face * l.slice;
+    return l;
 }
 
 AMB_INLINE void sample_levels_cube(const request_cube *r, texture_storage store, v3x direction,
                                    const lod_levels *levels, colorx *out)
 {
     cube_point p = point_on_cube(direction);
-    levelx near = level_at(r->texture, levels->near);
+    const wrapped u = {p.u, false}, v = {p.v, false};
+    levelx near = level_of_face(r->texture, levels->near, p.face);
     if (r->sampler->filter == AMB_NEAREST) {
-        f32x last = near.width - 1.0f;
-        i32x column = small_to_i(f_min(p.u * near.width, last)) + 1,
-             row = small_to_i(f_min(p.v * near.width, last)) + 1;
-        fetch_texel(r->texture, store, near.base + p.face * near.slice + row * near.pitch + column, out);
+        filter_nearest(r->texture, store, place_texel(&near, &u, &v), out);
         return;
     }
-    quad_place at = place_cube(&near, &p);
-    if (!m_any(levels->blend > 0.0f)) {
-        fetch_bilinear(r->texture, store, &at, out);
+    quad_place at = place_quad(&near, &u, &v);
+    if (!levels->two) {
+        filter_bilinear(r->texture, store, &at, out);
         return;
     }
-    levelx far = level_at(r->texture, levels->far);
-    quad_place far_at = place_cube(&far, &p);
-    fetch_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
+    levelx far = level_of_face(r->texture, next_level(r->texture, levels->near), p.face);
+    quad_place far_at = place_quad(&far, &u, &v);
+    filter_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
 }
 
 AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)
 {
-    lod_levels levels = pick_levels(r->texture, r->sampler, r->lod);
+    lod_levels levels = levels_of_detail(r->texture, r->sampler, r->detail);
     colorx sum;
     if (r->most_taps <= 1) {
         sample_levels_cube(r, store, r->direction, &levels, &sum);
@@ -110,7 +108,7 @@ AMB_INLINE v4x sample_cube(const request_cube *r)
 v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x lod)
 {
     f32x zero = f_set(0.0f);
-    request_cube r = {texture, sampler, direction, {zero, zero, zero}, lod, f_set(1.0f), 1};
+    request_cube r = {texture, sampler, direction, {zero, zero, zero}, {lod, false}, f_set(1.0f), 1};
     return sample_cube(&r);
 }
 
@@ -121,8 +119,13 @@ v4x amb_sample_cube_grad(const amb_texture *texture, const amb_sampler *sampler,
     f32x half_width = f_set(0.5f * texture->width[0]);
     footprintx p = footprint(face_footprint(on_face, to_face(&f, ddx), half_width),
                              face_footprint(on_face, to_face(&f, ddy), half_width), sampler->max_anisotropy);
-    request_cube r = {
-        texture, sampler, direction, v3x_sel(p.along_x, ddx, ddy), p.lod, p.taps, sampler->max_anisotropy};
+    request_cube r = {.texture = texture,
+                      .sampler = sampler,
+                      .direction = direction,
+                      .axis = v3x_sel(p.along_x, ddx, ddy),
+                      .detail = detail_of_square(texture, sampler, p.square),
+                      .taps = p.taps,
+                      .most_taps = sampler->max_anisotropy};
     return sample_cube(&r);
 }
 

@@ -18,7 +18,8 @@ AMB_INLINE int storage_channels(texture_storage store) { return store == STORE_F
 
 typedef struct {
     f32x c[4];
-} colorx; /* as stored: UNORM8 in 0…255 */
+} colorx; /* as stored, UNORM8 in 0…255; while it is filtered, in 0…255·UNORM8_ONE */
+#define UNORM8_ONE 16384 /* the sum of a filter's weights */
 
 /* Channel k of a texel's words. */
 AMB_INLINE f32x decode_channel(texture_storage store, const u32x *word, int k)
@@ -75,66 +76,12 @@ AMB_INLINE void fetch_pair(const amb_texture *t, texture_storage store, i32x tex
     decode_words(store, word + storage_words(store), b);
 }
 
-AMB_INLINE void lerp_colors(texture_storage store, const colorx *a, const colorx *b, f32x t, colorx *out)
-{
-    for (int k = 0; k < storage_channels(store); k++)
-        out->c[k] = f_lerp(a->c[k], b->c[k], t);
-}
-
-/* Where 2×2 texels lie: the first of them, the distance to the row below, and the weights of the second column and
- * row. */
-typedef struct {
-    i32x texel, pitch;
-    f32x fx, fy;
-} quad_place;
-
-/* Their words: of the upper two, then of the lower two. */
-typedef struct {
-    u32x word[2][8];
-} quad_words;
-
-AMB_INLINE void fetch_quad(const amb_texture *t, texture_storage store, const quad_place *at, quad_words *q)
-{
-    fetch_pair_words(t, store, at->texel, q->word[0]);
-    fetch_pair_words(t, store, at->texel + at->pitch, q->word[1]);
-}
-
-/* Channel k between the four. */
-AMB_INLINE f32x bilinear_channel(texture_storage store, const quad_place *at, const quad_words *q, int k)
-{
-    const int next = storage_words(store);
-    f32x above = f_lerp(decode_channel(store, q->word[0], k), decode_channel(store, q->word[0] + next, k), at->fx);
-    f32x below = f_lerp(decode_channel(store, q->word[1], k), decode_channel(store, q->word[1] + next, k), at->fx);
-    return f_lerp(above, below, at->fy);
-}
-
-AMB_INLINE void fetch_bilinear(const amb_texture *t, texture_storage store, const quad_place *at, colorx *out)
-{
-    quad_words q;
-    fetch_quad(t, store, at, &q);
-    for (int k = 0; k < storage_channels(store); k++)
-        out->c[k] = bilinear_channel(store, at, &q, k);
-}
-
-/* Between two levels, both at once: their chains of operations hide each other's latencies. */
-AMB_INLINE void fetch_trilinear(const amb_texture *t, texture_storage store, const quad_place *near,
-                                const quad_place *far, f32x blend, colorx *out)
-{
-    quad_words a, b;
-    maskx between = blend > 0.0f; /* a far texel that is infinite must not count where it has no weight */
-    fetch_quad(t, store, near, &a);
-    fetch_quad(t, store, far, &b);
-    for (int k = 0; k < storage_channels(store); k++) {
-        f32x near_k = bilinear_channel(store, near, &a, k), far_k = bilinear_channel(store, far, &b, k);
-        out->c[k] = f_sel(between, f_lerp(near_k, far_k, blend), near_k);
-    }
-}
-
+/* A filtered colour's channels in 0…1. */
 AMB_INLINE v4x finish_color(texture_storage store, const colorx *c)
 {
     if (store == STORE_FLOAT1)
         return (v4x){c->c[0], f_set(0.0f), f_set(0.0f), f_set(1.0f)};
-    float scale = store == STORE_UNORM8 ? 1.0f / 255.0f : 1.0f;
+    const float scale = store == STORE_UNORM8 ? 1.0f / 255.0f / UNORM8_ONE : 1.0f;
     return (v4x){c->c[0] * scale, c->c[1] * scale, c->c[2] * scale, c->c[3] * scale};
 }
 
@@ -191,10 +138,14 @@ AMB_INLINE f32x lod_log2(f32x a)
     return exponent + (m + m * (1.0f - m) * q);
 }
 
+/* A level, and how much of the next one counts. */
 typedef struct {
-    i32x near, far; /* the two levels; equal when only one counts */
-    f32x blend;     /* 0…1 from near to far */
+    i32x near;
+    f32x blend; /* 0…1 */
+    bool two;   /* some lane's blend may be above 0 */
 } lod_levels;
+
+AMB_INLINE i32x next_level(const amb_texture *t, i32x level) { return i_min(level + 1, i_set(t->info.levels - 1)); }
 
 /* The levels of a (biased, then clamped) level of detail; NaN gives the lowest allowed. */
 AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f32x lod)
@@ -202,12 +153,41 @@ AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f3
     float last = (float)(t->info.levels - 1), top = s->lod_max > 0.0f && s->lod_max < last ? s->lod_max : last;
     float first = amb_s_max(amb_s_min(s->lod_min, top), 0.0f);
     lod = f_clamp(lod + s->lod_bias, f_set(first), f_set(top));
-    if (s->filter != AMB_TRILINEAR) {
-        i32x level = small_to_i(lod + 0.5f);
-        return (lod_levels){level, level, f_set(0.0f)};
-    }
+    if (s->filter != AMB_TRILINEAR)
+        return (lod_levels){small_to_i(lod + 0.5f), f_set(0.0f), false};
     i32x near = small_to_i(lod);
-    return (lod_levels){near, i_min(near + 1, i_set(t->info.levels - 1)), lod - i_to_f(near)};
+    f32x blend = lod - i_to_f(near);
+    return (lod_levels){near, blend, m_any(blend > 0.0f)};
+}
+
+/* How fine a look-up is: the level of detail, or, short of a logarithm, the squared length in texels of level 0 that
+ * pick_levels would take ½·log2 of. */
+typedef struct {
+    f32x value;
+    bool squared;
+} detailx;
+
+/* Levels are whole for most samplers before the logarithm is known: the exponent holds them. Loads begin sooner. */
+AMB_INLINE bool takes_squares(const amb_texture *t, const amb_sampler *s)
+{
+    return s->filter == AMB_TRILINEAR && s->lod_bias == 0.0f && s->lod_min <= 0.0f &&
+           !(s->lod_max > 0.0f && s->lod_max < (float)(t->info.levels - 1));
+}
+
+AMB_INLINE detailx detail_of_square(const amb_texture *t, const amb_sampler *s, f32x square)
+{
+    if (takes_squares(t, s))
+        return (detailx){square, true};
+    return (detailx){lod_log2(square) * 0.5f, false};
+}
+
+AMB_INLINE lod_levels levels_of_detail(const amb_texture *t, const amb_sampler *s, detailx d)
+{
+    if (!d.squared)
+        return pick_levels(t, s, d.value);
+    f32x square = f_clamp(d.value, f_set(1.0f), f_set((float)(1 << 2 * (t->info.levels - 1))));
+    i32x near = (f_bits(square) - (127 << 23)) >> 24;
+    return (lod_levels){near, lod_log2(square) * 0.5f - i_to_f(near), m_any(square > 1.0f)};
 }
 
 /* ---- footprints ------------------------------------------------------------------------------------------------- */
@@ -216,7 +196,7 @@ AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f3
  * (OpenGL 4.6 §8.14.1). Anisotropic: N = min(⌈longer / shorter⌉, max), λ = log2(longer / N), N taps along the longer
  * axis (EXT_texture_filter_anisotropic). */
 typedef struct {
-    f32x lod, taps;
+    f32x square, taps; /* λ = ½·log2(square) */
     maskx along_x;
 } footprintx;
 
@@ -227,10 +207,10 @@ AMB_INLINE footprintx footprint(f32x square_x, f32x square_y, int max_anisotropy
     maskx along_x = square_x >= square_y;
     f32x longer = f_sel(along_x, square_x, square_y), shorter = f_sel(along_x, square_y, square_x);
     if (max_anisotropy <= 1)
-        return (footprintx){lod_log2(longer) * 0.5f, f_set(1.0f), along_x};
+        return (footprintx){longer, f_set(1.0f), along_x};
     float most = max_anisotropy < 16 ? (float)max_anisotropy : 16.0f;
     f32x taps = f_clamp(f_ceil(f_sqrt(longer / shorter)), f_set(1.0f), f_set(most));
-    return (footprintx){lod_log2(longer / (taps * taps)) * 0.5f, taps, along_x};
+    return (footprintx){longer / (taps * taps), taps, along_x};
 }
 
 AMB_INLINE f32x finite_or_zero(f32x a) { return f_sel(f_is_finite(a), a, f_set(0.0f)); }

@@ -1,9 +1,9 @@
 /* How textures lie in memory: shared by the maker (texture*.c) and the samplers (texture*_wide.c).
  *
- * Every level is padded so that a bilinear footprint never wraps: texel x + 1 is always the next one in memory and row
- * y + 1 the next row. 2D and 3D levels carry one more column, row and slice, copies of the first ones (what REPEAT
- * needs; CLAMP and MIRROR never give them weight). Cube faces carry a border of one texel all around, taken from the
- * neighbouring faces; a corner is the average of the three texels that meet there.
+ * Every level has a border of one texel all around, so that a footprint never wraps: texel x + 1 is always the next one
+ * in memory and row y + 1 the next row, from -1 on. Those of 2D and 3D levels hold the opposite side (what REPEAT needs;
+ * CLAMP and MIRROR never give them weight), those of cube faces the neighbouring faces; a cube's corner is the average
+ * of the three texels that meet there.
  *
  * Texels are stored as one of four kinds that decode exactly: */
 #ifndef AMBIANCE_CORE_TEXTURE_LAYOUT_H
@@ -30,7 +30,7 @@ struct amb_texture {
     size_t words; /* of data, without slack */
     uint32_t *data;
     /* By level; in texels. Sixteen entries so that lanes can look them up in registers. */
-    int32_t base[AMB_MAX_TEXTURE_LEVELS];  /* first stored texel */
+    int32_t base[AMB_MAX_TEXTURE_LEVELS];  /* first stored texel: of the border */
     int32_t pitch[AMB_MAX_TEXTURE_LEVELS]; /* texels from a row to the next */
     int32_t slice[AMB_MAX_TEXTURE_LEVELS]; /* texels from a slice or face to the next */
     float width[AMB_MAX_TEXTURE_LEVELS], height[AMB_MAX_TEXTURE_LEVELS], depth[AMB_MAX_TEXTURE_LEVELS];
@@ -56,12 +56,13 @@ AMB_INLINE int level_slices(const amb_texture_info *info, int level)
     }
     return 1;
 }
-/* The words of texel (x, y) of slice or face z; -1 is the border of a cube's face, the size is the padding. */
+/* Slices of border before the first one. */
+AMB_INLINE int slice_border(const amb_texture_info *info) { return info->kind == AMB_TEXTURE_3D; }
+/* The words of texel (x, y) of slice, face or layer z; -1 and the size are the border. */
 AMB_INLINE uint32_t *texel_at(const amb_texture *t, int level, int x, int y, int z)
 {
-    int border = t->info.kind == AMB_TEXTURE_CUBE;
-    size_t index = (size_t)t->base[level] + (size_t)z * (size_t)t->slice[level] +
-                   (size_t)(y + border) * (size_t)t->pitch[level] + (size_t)(x + border);
+    size_t index = (size_t)t->base[level] + (size_t)(z + slice_border(&t->info)) * (size_t)t->slice[level] +
+                   (size_t)(y + 1) * (size_t)t->pitch[level] + (size_t)(x + 1);
     return t->data + index * (size_t)storage_words(t->storage);
 }
 
@@ -82,6 +83,6 @@ void srgb_tables(float linear[256], float edges[256]);
 
 /* texture_mips.c */
 amb_status texture_make_mips(amb_texture *texture, int first, amb_error *error); /* levels first … levels-1 */
-void texture_pad(amb_texture *texture, int level);                               /* its borders */
+void texture_pad(amb_texture *texture, int level);                               /* its border */
 
 #endif

@@ -115,19 +115,25 @@ static void copy_texel(const amb_texture *t, uint32_t *to, const uint32_t *from)
     memcpy(to, from, (size_t)storage_words(t->storage) * sizeof *to);
 }
 
-/* One more column, row and slice: copies of the first. */
+/* Every side's border is the opposite side. */
 static void pad_repeat(amb_texture *t, int level)
 {
     int width = level_size(t->info.width, level), height = level_size(t->info.height, level);
     int slices = level_slices(&t->info, level);
     size_t row_bytes = (size_t)t->pitch[level] * (size_t)storage_words(t->storage) * sizeof(uint32_t);
     for (int z = 0; z < slices; z++) {
-        for (int y = 0; y < height; y++)
+        for (int y = 0; y < height; y++) {
+            copy_texel(t, texel_at(t, level, -1, y, z), texel_at(t, level, width - 1, y, z));
             copy_texel(t, texel_at(t, level, width, y, z), texel_at(t, level, 0, y, z));
-        memcpy(texel_at(t, level, 0, height, z), texel_at(t, level, 0, 0, z), row_bytes);
+        }
+        memcpy(texel_at(t, level, -1, -1, z), texel_at(t, level, -1, height - 1, z), row_bytes);
+        memcpy(texel_at(t, level, -1, height, z), texel_at(t, level, -1, 0, z), row_bytes);
     }
-    if (t->info.kind == AMB_TEXTURE_3D)
-        memcpy(texel_at(t, level, 0, 0, slices), texel_at(t, level, 0, 0, 0), row_bytes * (size_t)(height + 1));
+    if (t->info.kind != AMB_TEXTURE_3D)
+        return;
+    size_t slice_bytes = row_bytes * (size_t)(height + 2);
+    memcpy(texel_at(t, level, -1, -1, -1), texel_at(t, level, -1, -1, slices - 1), slice_bytes);
+    memcpy(texel_at(t, level, -1, -1, slices), texel_at(t, level, -1, -1, 0), slice_bytes);
 }
 
 /* Face axes in D3D order: where s (right), t (down) and the face's own axis point. */

@@ -3,12 +3,13 @@
 
 /* ---- 2D --------------------------------------------------------------------------------------------------------- */
 
-/* Where and how to sample: one tap at uv, or `taps` along `axis`. lod is not biased yet. */
+/* Where and how to sample: one tap at uv, or `taps` along `axis`. */
 typedef struct {
     const amb_texture *texture;
     const amb_sampler *sampler;
     v2x uv, axis;
-    f32x lod, taps;
+    detailx detail;
+    f32x taps;
     int most_taps;
     bool layered;
     i32x layer; /* of arrays */
@@ -22,13 +23,6 @@ AMB_INLINE levelx level_2d(const request_2d *r, i32x level)
     return l;
 }
 
-AMB_INLINE quad_place place_2d(const levelx *l, const wrapped *u, const wrapped *v)
-{
-    i32x x, y;
-    f32x fx = texel_left_of(u, l->width, &x), fy = texel_left_of(v, l->height, &y);
-    return (quad_place){l->base + y * l->pitch + x, l->pitch, fx, fy};
-}
-
 /* A lane between two levels blends them; the second is fetched only when some lane needs it. */
 AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x uv, const lod_levels *levels,
                                  colorx *out)
@@ -36,26 +30,25 @@ AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x
     const amb_wrap *wrap = r->sampler->wrap;
     uv.x = finite_or_zero(uv.x);
     uv.y = finite_or_zero(uv.y);
+    wrapped u = wrap_coordinate(uv.x, wrap[0]), v = wrap_coordinate(uv.y, wrap[1]);
     levelx near = level_2d(r, levels->near);
     if (r->sampler->filter == AMB_NEAREST) {
-        i32x x = wrap_nearest(uv.x, near.width, wrap[0]), y = wrap_nearest(uv.y, near.height, wrap[1]);
-        fetch_texel(r->texture, store, near.base + y * near.pitch + x, out);
+        filter_nearest(r->texture, store, place_texel(&near, &u, &v), out);
         return;
     }
-    wrapped u = wrap_coordinate(uv.x, wrap[0]), v = wrap_coordinate(uv.y, wrap[1]);
-    quad_place at = place_2d(&near, &u, &v);
-    if (!m_any(levels->blend > 0.0f)) {
-        fetch_bilinear(r->texture, store, &at, out);
+    quad_place at = place_quad(&near, &u, &v);
+    if (!levels->two) {
+        filter_bilinear(r->texture, store, &at, out);
         return;
     }
-    levelx far = level_2d(r, levels->far);
-    quad_place far_at = place_2d(&far, &u, &v);
-    fetch_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
+    levelx far = level_2d(r, next_level(r->texture, levels->near));
+    quad_place far_at = place_quad(&far, &u, &v);
+    filter_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
 }
 
 AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
 {
-    lod_levels levels = pick_levels(r->texture, r->sampler, r->lod);
+    lod_levels levels = levels_of_detail(r->texture, r->sampler, r->detail);
     colorx sum;
     if (r->most_taps <= 1) {
         sample_levels_2d(r, store, r->uv, &levels, &sum);
@@ -93,44 +86,39 @@ static __attribute__((noinline)) v4x sample_2d_float4(const request_2d *r)
 
 /* One tap of a texture without layers, the usual case: its numbers stay in registers. */
 AMB_INLINE v4x sample_tap_2d(const amb_texture *texture, const amb_sampler *sampler, texture_storage store, f32x u,
-                             f32x v, f32x lod)
+                             f32x v, f32x detail, bool squared)
 {
     const request_2d r = {.texture = texture, .sampler = sampler};
-    lod_levels levels = pick_levels(texture, sampler, lod);
+    lod_levels levels = levels_of_detail(texture, sampler, (detailx){detail, squared});
     colorx c;
     sample_levels_2d(&r, store, v2x_of(u, v), &levels, &c);
     return finish_color(store, &c);
 }
-static __attribute__((noinline)) v4x tap_2d_unorm8(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
-{
-    return sample_tap_2d(t, s, STORE_UNORM8, u, v, lod);
-}
-static __attribute__((noinline)) v4x tap_2d_half4(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
-{
-    return sample_tap_2d(t, s, STORE_HALF4, u, v, lod);
-}
-static __attribute__((noinline)) v4x tap_2d_float1(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
-{
-    return sample_tap_2d(t, s, STORE_FLOAT1, u, v, lod);
-}
-static __attribute__((noinline)) v4x tap_2d_float4(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x lod)
-{
-    return sample_tap_2d(t, s, STORE_FLOAT4, u, v, lod);
-}
+#define TAP_2D_(name, store)                                                                                         \
+    static __attribute__((noinline)) v4x name(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x detail, \
+                                              bool squared)                                                          \
+    {                                                                                                                \
+        return sample_tap_2d(t, s, store, u, v, detail, squared);                                                    \
+    }
+TAP_2D_(tap_2d_unorm8, STORE_UNORM8)
+TAP_2D_(tap_2d_half4, STORE_HALF4)
+TAP_2D_(tap_2d_float1, STORE_FLOAT1)
+TAP_2D_(tap_2d_float4, STORE_FLOAT4)
+#undef TAP_2D_
 
-AMB_INLINE v4x tap_2d(const amb_texture *t, const amb_sampler *s, v2x uv, f32x lod)
+AMB_INLINE v4x tap_2d(const amb_texture *t, const amb_sampler *s, v2x uv, detailx d)
 {
     switch (t->storage) {
     case STORE_UNORM8:
-        return tap_2d_unorm8(t, s, uv.x, uv.y, lod);
+        return tap_2d_unorm8(t, s, uv.x, uv.y, d.value, d.squared);
     case STORE_HALF4:
-        return tap_2d_half4(t, s, uv.x, uv.y, lod);
+        return tap_2d_half4(t, s, uv.x, uv.y, d.value, d.squared);
     case STORE_FLOAT1:
-        return tap_2d_float1(t, s, uv.x, uv.y, lod);
+        return tap_2d_float1(t, s, uv.x, uv.y, d.value, d.squared);
     case STORE_FLOAT4:
         break;
     }
-    return tap_2d_float4(t, s, uv.x, uv.y, lod);
+    return tap_2d_float4(t, s, uv.x, uv.y, d.value, d.squared);
 }
 
 AMB_INLINE v4x sample_2d(const request_2d *r)
@@ -150,7 +138,7 @@ AMB_INLINE v4x sample_2d(const request_2d *r)
 
 v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod)
 {
-    return tap_2d(texture, sampler, uv, lod);
+    return tap_2d(texture, sampler, uv, (detailx){lod, false});
 }
 
 AMB_INLINE footprintx footprint_2d(const amb_texture *texture, v2x ddx, v2x ddy, int max_anisotropy)
@@ -168,7 +156,7 @@ AMB_INLINE request_2d request_with_gradients(const amb_texture *texture, const a
                         .sampler = sampler,
                         .uv = uv,
                         .axis = v2x_sel(f.along_x, ddx, ddy),
-                        .lod = f.lod,
+                        .detail = detail_of_square(texture, sampler, f.square),
                         .taps = f.taps,
                         .most_taps = sampler->max_anisotropy};
 }
@@ -176,14 +164,15 @@ AMB_INLINE request_2d request_with_gradients(const amb_texture *texture, const a
 v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy)
 {
     if (sampler->max_anisotropy <= 1)
-        return tap_2d(texture, sampler, uv, footprint_2d(texture, ddx, ddy, 1).lod);
+        return tap_2d(texture, sampler, uv,
+                      detail_of_square(texture, sampler, footprint_2d(texture, ddx, ddy, 1).square));
     request_2d r = request_with_gradients(texture, sampler, uv, ddx, ddy);
     return sample_2d(&r);
 }
 
 v4x amb_sample_2d_array_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, f32x lod)
 {
-    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .lod = lod, .taps = f_set(1.0f), .most_taps = 1};
+    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .detail = {lod, false}, .taps = f_set(1.0f), .most_taps = 1};
     r.layered = true, r.layer = clamp_layer(texture, layer);
     return sample_2d(&r);
 }
@@ -201,7 +190,8 @@ v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv
 {
     v2x ddx = v2x_of(f_ddx(uv.x), f_ddx(uv.y)), ddy = v2x_of(f_ddy(uv.x), f_ddy(uv.y));
     if (sampler->max_anisotropy <= 1)
-        return tap_2d(texture, sampler, uv, footprint_2d(texture, ddx, ddy, 1).lod);
+        return tap_2d(texture, sampler, uv,
+                      detail_of_square(texture, sampler, footprint_2d(texture, ddx, ddy, 1).square));
     return amb_sample_2d_grad(texture, sampler, uv, ddx, ddy);
 }
 
@@ -218,20 +208,20 @@ AMB_INLINE void sample_level_3d(const amb_texture *t, const amb_sampler *s, text
                                 colorx *out)
 {
     levelx l = level_at(t, level);
+    wrapped u = wrap_coordinate(uvw.x, s->wrap[0]), v = wrap_coordinate(uvw.y, s->wrap[1]);
+    wrapped w = wrap_coordinate(uvw.z, s->wrap[2]);
     if (s->filter == AMB_NEAREST) {
-        i32x x = wrap_nearest(uvw.x, l.width, s->wrap[0]), y = wrap_nearest(uvw.y, l.height, s->wrap[1]);
-        i32x z = wrap_nearest(uvw.z, l.depth, s->wrap[2]);
-        fetch_texel(t, store, l.base + z * l.slice + y * l.pitch + x, out);
+        filter_nearest(t, store, place_texel(&l, &u, &v) + place_nearest(&w, l.depth) * l.slice, out);
         return;
     }
-    i32x x, y, z;
-    f32x fx = wrap_linear(uvw.x, l.width, s->wrap[0], &x), fy = wrap_linear(uvw.y, l.height, s->wrap[1], &y);
-    f32x fz = wrap_linear(uvw.z, l.depth, s->wrap[2], &z);
-    quad_place at = {l.base + z * l.slice + y * l.pitch + x, l.pitch, fx, fy};
+    i32x z;
+    f32x fz = place_between(&w, l.depth, &z);
+    quad_place at = place_quad(&l, &u, &v);
     colorx near, far;
-    fetch_bilinear(t, store, &at, &near);
+    at.texel += z * l.slice;
+    filter_bilinear(t, store, &at, &near);
     at.texel += l.slice;
-    fetch_bilinear(t, store, &at, &far);
+    filter_bilinear(t, store, &at, &far);
     lerp_colors(store, &near, &far, fz, out);
 }
 
@@ -241,9 +231,9 @@ AMB_INLINE v4x sample_3d(const amb_texture *t, const amb_sampler *s, texture_sto
     uvw = v3x_of(finite_or_zero(uvw.x), finite_or_zero(uvw.y), finite_or_zero(uvw.z));
     colorx out, far;
     sample_level_3d(t, s, store, uvw, levels.near, &out);
-    maskx between = levels.blend > 0.0f;
-    if (m_any(between)) {
-        sample_level_3d(t, s, store, uvw, levels.far, &far);
+    if (levels.two) {
+        maskx between = levels.blend > 0.0f;
+        sample_level_3d(t, s, store, uvw, next_level(t, levels.near), &far);
         for (int k = 0; k < storage_channels(store); k++)
             out.c[k] = f_sel(between, f_lerp(out.c[k], far.c[k], levels.blend), out.c[k]);
     }
