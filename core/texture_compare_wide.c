@@ -81,14 +81,14 @@ f32x amb_compare_2d_array_lod(const amb_texture *texture, const amb_sampler *sam
                               f32x reference, f32x lod)
 {
     comparison c = comparison_of(texture, sampler, reference);
-    lod_levels levels = pick_levels(texture, sampler, lod);
+    lod_levels levels = levels_of_lod(texture, sampler, lod);
     uv = v2x_of(finite_or_zero(uv.x), finite_or_zero(uv.y));
     layer = clamp_layer(texture, layer);
     f32x near = compare_level_2d(&c, sampler->wrap, uv, layer, levels.near);
     if (!levels.two)
         return near;
     f32x far = compare_level_2d(&c, sampler->wrap, uv, layer, next_level(texture, levels.near));
-    return f_sel(levels.blend > 0.0f, f_lerp(near, far, levels.blend), near);
+    return between_levels(near, far, blend_of(&levels));
 }
 
 f32x amb_compare_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x reference, f32x lod)
@@ -130,11 +130,11 @@ f32x amb_compare_cube_lod(const amb_texture *texture, const amb_sampler *sampler
                           f32x lod)
 {
     comparison c = comparison_of(texture, sampler, reference);
-    lod_levels levels = pick_levels(texture, sampler, lod);
+    lod_levels levels = levels_of_lod(texture, sampler, lod);
     cube_point p = point_on_cube(direction);
     f32x near = compare_level_cube(&c, &p, levels.near);
     if (!levels.two)
         return near;
     f32x far = compare_level_cube(&c, &p, next_level(texture, levels.near));
-    return f_sel(levels.blend > 0.0f, f_lerp(near, far, levels.blend), near);
+    return between_levels(near, far, blend_of(&levels));
 }

@@ -46,17 +46,13 @@ AMB_INLINE void sample_levels_cube(const request_cube *r, texture_storage store,
     }
     levelx far = level_of_face(r->texture, next_level(r->texture, levels->near), p.face);
     quad_place far_at = place_quad(&far, &u, &v);
-    filter_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
+    filter_trilinear(r->texture, store, &at, &far_at, blend_of(levels), out);
 }
 
 AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)
 {
-    lod_levels levels = levels_of_detail(r->texture, r->sampler, r->detail);
+    lod_levels levels = pick_levels(r->texture, r->sampler, r->detail);
     colorx sum;
-    if (r->most_taps <= 1) {
-        sample_levels_cube(r, store, r->direction, &levels, &sum);
-        return finish_color(store, &sum);
-    }
     memset(&sum, 0, sizeof sum);
     for (int i = 1; i <= r->most_taps; i++) {
         maskx wanted = r->taps >= (float)i;
@@ -73,22 +69,32 @@ AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)
     return finish_color(store, &sum);
 }
 
-static __attribute__((noinline)) v4x sample_cube_unorm8(const request_cube *r)
+/* One tap, the usual case: its numbers stay in registers. */
+AMB_INLINE v4x sample_tap_cube(const amb_texture *texture, const amb_sampler *sampler, texture_storage store, f32x x,
+                               f32x y, f32x z, f32x detail, bool squared)
 {
-    return sample_request_cube(r, STORE_UNORM8);
+    const request_cube r = {.texture = texture, .sampler = sampler};
+    lod_levels levels = pick_levels(texture, sampler, (detailx){detail, squared});
+    colorx c;
+    sample_levels_cube(&r, store, v3x_of(x, y, z), &levels, &c);
+    return finish_color(store, &c);
 }
-static __attribute__((noinline)) v4x sample_cube_half4(const request_cube *r)
-{
-    return sample_request_cube(r, STORE_HALF4);
-}
-static __attribute__((noinline)) v4x sample_cube_float1(const request_cube *r)
-{
-    return sample_request_cube(r, STORE_FLOAT1);
-}
-static __attribute__((noinline)) v4x sample_cube_float4(const request_cube *r)
-{
-    return sample_request_cube(r, STORE_FLOAT4);
-}
+
+#define CUBE_OF_STORAGE_(name, store)                                                                      \
+    static __attribute__((noinline)) v4x sample_cube_##name(const request_cube *r)                         \
+    {                                                                                                      \
+        return sample_request_cube(r, store);                                                              \
+    }                                                                                                      \
+    static __attribute__((noinline)) v4x tap_cube_##name(const amb_texture *t, const amb_sampler *s, f32x x, \
+                                                         f32x y, f32x z, f32x detail, bool squared)        \
+    {                                                                                                      \
+        return sample_tap_cube(t, s, store, x, y, z, detail, squared);                                     \
+    }
+CUBE_OF_STORAGE_(unorm8, STORE_UNORM8)
+CUBE_OF_STORAGE_(half4, STORE_HALF4)
+CUBE_OF_STORAGE_(float1, STORE_FLOAT1)
+CUBE_OF_STORAGE_(float4, STORE_FLOAT4)
+#undef CUBE_OF_STORAGE_
 
 AMB_INLINE v4x sample_cube(const request_cube *r)
 {
@@ -105,35 +111,57 @@ AMB_INLINE v4x sample_cube(const request_cube *r)
     return sample_cube_float4(r);
 }
 
-v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x lod)
+AMB_INLINE v4x tap_cube(const amb_texture *t, const amb_sampler *s, v3x direction, detailx d)
 {
-    f32x zero = f_set(0.0f);
-    request_cube r = {texture, sampler, direction, {zero, zero, zero}, {lod, false}, f_set(1.0f), 1};
-    return sample_cube(&r);
+    const f32x x = direction.x, y = direction.y, z = direction.z;
+    switch (t->storage) {
+    case STORE_UNORM8:
+        return tap_cube_unorm8(t, s, x, y, z, d.value, d.squared);
+    case STORE_HALF4:
+        return tap_cube_half4(t, s, x, y, z, d.value, d.squared);
+    case STORE_FLOAT1:
+        return tap_cube_float1(t, s, x, y, z, d.value, d.squared);
+    case STORE_FLOAT4:
+        break;
+    }
+    return tap_cube_float4(t, s, x, y, z, d.value, d.squared);
 }
 
-v4x amb_sample_cube_grad(const amb_texture *texture, const amb_sampler *sampler, v3x direction, v3x ddx, v3x ddy)
+v4x amb_sample_cube_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z, f32x lod)
+{
+    return tap_cube(texture, sampler, v3x_of(x, y, z), (detailx){lod, false});
+}
+
+AMB_INLINE v4x sample_with_gradients(const amb_texture *texture, const amb_sampler *sampler, v3x direction, v3x ddx,
+                                     v3x ddy)
 {
     facex f = pick_face(direction);
     v3x on_face = to_face(&f, direction);
     f32x half_width = f_set(0.5f * texture->width[0]);
     footprintx p = footprint(face_footprint(on_face, to_face(&f, ddx), half_width),
                              face_footprint(on_face, to_face(&f, ddy), half_width), sampler->max_anisotropy);
+    detailx detail = detail_of_square(texture, sampler, p.square);
+    if (sampler->max_anisotropy <= 1)
+        return tap_cube(texture, sampler, direction, detail);
     request_cube r = {.texture = texture,
                       .sampler = sampler,
                       .direction = direction,
                       .axis = v3x_sel(p.along_x, ddx, ddy),
-                      .detail = detail_of_square(texture, sampler, p.square),
+                      .detail = detail,
                       .taps = p.taps,
                       .most_taps = sampler->max_anisotropy};
     return sample_cube(&r);
 }
 
-#if AMB_LANES > 1
-v4x amb_sample_cube(const amb_texture *texture, const amb_sampler *sampler, v3x direction)
+v4x amb_sample_cube_grad(const amb_texture *texture, const amb_sampler *sampler, v3x direction, v3x ddx, v3x ddy)
 {
-    v3x ddx = v3x_of(f_ddx(direction.x), f_ddx(direction.y), f_ddx(direction.z));
-    v3x ddy = v3x_of(f_ddy(direction.x), f_ddy(direction.y), f_ddy(direction.z));
-    return amb_sample_cube_grad(texture, sampler, direction, ddx, ddy);
+    return sample_with_gradients(texture, sampler, direction, ddx, ddy);
+}
+
+#if AMB_LANES > 1
+v4x amb_sample_cube_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z)
+{
+    return sample_with_gradients(texture, sampler, v3x_of(x, y, z), v3x_of(f_ddx(x), f_ddx(y), f_ddx(z)),
+                                 v3x_of(f_ddy(x), f_ddy(y), f_ddy(z)));
 }
 #endif

@@ -138,56 +138,58 @@ AMB_INLINE f32x lod_log2(f32x a)
     return exponent + (m + m * (1.0f - m) * q);
 }
 
-/* A level, and how much of the next one counts. */
-typedef struct {
-    i32x near;
-    f32x blend; /* 0…1 */
-    bool two;   /* some lane's blend may be above 0 */
-} lod_levels;
-
-AMB_INLINE i32x next_level(const amb_texture *t, i32x level) { return i_min(level + 1, i_set(t->info.levels - 1)); }
-
-/* The levels of a (biased, then clamped) level of detail; NaN gives the lowest allowed. */
-AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, f32x lod)
-{
-    float last = (float)(t->info.levels - 1), top = s->lod_max > 0.0f && s->lod_max < last ? s->lod_max : last;
-    float first = amb_s_max(amb_s_min(s->lod_min, top), 0.0f);
-    lod = f_clamp(lod + s->lod_bias, f_set(first), f_set(top));
-    if (s->filter != AMB_TRILINEAR)
-        return (lod_levels){small_to_i(lod + 0.5f), f_set(0.0f), false};
-    i32x near = small_to_i(lod);
-    f32x blend = lod - i_to_f(near);
-    return (lod_levels){near, blend, m_any(blend > 0.0f)};
-}
-
-/* How fine a look-up is: the level of detail, or, short of a logarithm, the squared length in texels of level 0 that
- * pick_levels would take ½·log2 of. */
+/* How fine a look-up is: the level of detail, or, short of a logarithm, the squared length in texels of level 0 that it
+ * is half the binary logarithm of. */
 typedef struct {
     f32x value;
     bool squared;
 } detailx;
 
-/* Levels are whole for most samplers before the logarithm is known: the exponent holds them. Loads begin sooner. */
-AMB_INLINE bool takes_squares(const amb_texture *t, const amb_sampler *s)
+/* A level; the next one counts by blend_of. */
+typedef struct {
+    i32x near;
+    bool two;     /* some lane may blend */
+    detailx rest; /* blend, if not squared */
+} lod_levels;
+
+AMB_INLINE i32x next_level(const amb_texture *t, i32x level) { return i_min(level + 1, i_set(t->info.levels - 1)); }
+
+/* The levels of a (biased, then clamped) level of detail; NaN gives the lowest allowed. */
+AMB_INLINE lod_levels levels_of_lod(const amb_texture *t, const amb_sampler *s, f32x lod)
 {
-    return s->filter == AMB_TRILINEAR && s->lod_bias == 0.0f && s->lod_min <= 0.0f &&
-           !(s->lod_max > 0.0f && s->lod_max < (float)(t->info.levels - 1));
+    float last = (float)(t->info.levels - 1), top = s->lod_max > 0.0f && s->lod_max < last ? s->lod_max : last;
+    float first = amb_s_max(amb_s_min(s->lod_min, top), 0.0f);
+    lod = f_clamp(lod + s->lod_bias, f_set(first), f_set(top));
+    if (s->filter != AMB_TRILINEAR)
+        return (lod_levels){small_to_i(lod + 0.5f), false, {f_set(0.0f), false}};
+    i32x near = small_to_i(lod);
+    f32x blend = lod - i_to_f(near);
+    return (lod_levels){near, m_any(blend > 0.0f), {blend, false}};
 }
 
+/* Without bias and bounds a footprint's exponent holds the level: texels are on their way before the logarithm is. */
 AMB_INLINE detailx detail_of_square(const amb_texture *t, const amb_sampler *s, f32x square)
 {
-    if (takes_squares(t, s))
+    const float last = (float)(t->info.levels - 1);
+    if (s->filter == AMB_TRILINEAR && s->lod_bias == 0.0f && s->lod_min <= 0.0f &&
+        !(s->lod_max > 0.0f && s->lod_max < last))
         return (detailx){square, true};
     return (detailx){lod_log2(square) * 0.5f, false};
 }
 
-AMB_INLINE lod_levels levels_of_detail(const amb_texture *t, const amb_sampler *s, detailx d)
+AMB_INLINE lod_levels pick_levels(const amb_texture *t, const amb_sampler *s, detailx d)
 {
     if (!d.squared)
-        return pick_levels(t, s, d.value);
+        return levels_of_lod(t, s, d.value);
     f32x square = f_clamp(d.value, f_set(1.0f), f_set((float)(1 << 2 * (t->info.levels - 1))));
     i32x near = (f_bits(square) - (127 << 23)) >> 24;
-    return (lod_levels){near, lod_log2(square) * 0.5f - i_to_f(near), m_any(square > 1.0f)};
+    return (lod_levels){near, m_any(square > 1.0f), {square, true}};
+}
+
+/* 0…1, from `near` to the next level. Wanted late: see texture_filter.h. */
+AMB_INLINE f32x blend_of(const lod_levels *l)
+{
+    return l->rest.squared ? lod_log2(l->rest.value) * 0.5f - i_to_f(l->near) : l->rest.value;
 }
 
 /* ---- footprints ------------------------------------------------------------------------------------------------- */

@@ -28,14 +28,55 @@ AMB_INLINE void fetch_quad(const amb_texture *t, texture_storage store, const qu
     fetch_pair_words(t, store, at->texel + at->pitch, q->word[1]);
 }
 
-/* Channel k between the four. */
+/* Channel k between the four: first from row to row, then from column to column. */
 AMB_INLINE f32x bilinear_channel(texture_storage store, const quad_place *at, const quad_words *q, int k)
 {
     const int next = storage_words(store);
-    f32x above = f_lerp(decode_channel(store, q->word[0], k), decode_channel(store, q->word[0] + next, k), at->fx);
-    f32x below = f_lerp(decode_channel(store, q->word[1], k), decode_channel(store, q->word[1] + next, k), at->fx);
-    return f_lerp(above, below, at->fy);
+    f32x left = f_lerp(decode_channel(store, q->word[0], k), decode_channel(store, q->word[1], k), at->fy);
+    f32x right =
+        f_lerp(decode_channel(store, q->word[0] + next, k), decode_channel(store, q->word[1] + next, k), at->fy);
+    return f_lerp(left, right, at->fx);
 }
+
+/* Between two levels. A far texel that is infinite must not count where it has no weight. */
+AMB_INLINE f32x between_levels(f32x near, f32x far, f32x blend)
+{
+    return f_sel(blend > 0.0f, f_lerp(near, far, blend), near);
+}
+
+#if AMB_X86
+/* ---- texels of four channels, pixel by pixel -------------------------------------------------------------------- */
+
+/* Registers hold the four channels of a lane in each block of four words; register i of four: those of lanes 4j + i. */
+
+/* Texels' numbers, spilled as in gather.h. */
+typedef struct {
+    int32_t above[AMB_LANES], below[AMB_LANES];
+} __attribute__((aligned(64))) quad_offsets;
+
+AMB_INLINE void spill_offsets(const quad_place *at, quad_offsets *o)
+{
+    i_store(o->above, at->texel);
+    i_store(o->below, at->texel + at->pitch);
+}
+/* Loads by `o` come after `a` and `b`, in the order of the program; the empty statement does nothing else. */
+#define LOADS_AFTER_(o, a, b) __asm__("" : "+m"(o), "+v"(a), "+v"(b))
+
+/* Word i of every block, to all of it. */
+AMB_INLINE i32x splat_in_blocks(i32x a, int i)
+{
+    switch (i) {
+    case 0:
+        return (i32x)LANES_(shuffle_epi32)((LANES_INT_)a, 0x00);
+    case 1:
+        return (i32x)LANES_(shuffle_epi32)((LANES_INT_)a, 0x55);
+    case 2:
+        return (i32x)LANES_(shuffle_epi32)((LANES_INT_)a, 0xaa);
+    }
+    return (i32x)LANES_(shuffle_epi32)((LANES_INT_)a, 0xff);
+}
+AMB_INLINE f32x f_splat_in_blocks(f32x a, int i) { return f_from_bits(splat_in_blocks(f_bits(a), i)); }
+#endif
 
 /* ---- UNORM8: integers ------------------------------------------------------------------------------------------- */
 
@@ -98,33 +139,6 @@ AMB_INLINE void weights_between(const quad_place *near, const quad_place *far, f
 }
 
 #if AMB_X86
-/* Spilled lanes, as in gather.h. */
-typedef struct {
-    int32_t above[AMB_LANES], below[AMB_LANES];
-} __attribute__((aligned(64))) quad_offsets;
-
-/* The empty statement makes the loads wait for the weights, in the order of the program only. */
-AMB_INLINE void spill_offsets(const quad_place *at, quad_weights *w, quad_offsets *o)
-{
-    i_store(o->above, at->texel);
-    i_store(o->below, at->texel + at->pitch);
-    __asm__("" : "+m"(*o), "+v"(w->above), "+v"(w->below));
-}
-
-/* Word i of every block of four, to all of it. */
-AMB_INLINE LANES_INT_ splat_in_blocks(i32x a, int i)
-{
-    switch (i) {
-    case 0:
-        return LANES_(shuffle_epi32)((LANES_INT_)a, 0x00);
-    case 1:
-        return LANES_(shuffle_epi32)((LANES_INT_)a, 0x55);
-    case 2:
-        return LANES_(shuffle_epi32)((LANES_INT_)a, 0xaa);
-    }
-    return LANES_(shuffle_epi32)((LANES_INT_)a, 0xff);
-}
-
 AMB_INLINE LANES_INT_ repeat_block(__m128i a)
 {
 #if AMB_LANES == 16
@@ -146,14 +160,14 @@ AMB_INLINE LANES_INT_ weigh_quads(const uint32_t *data, const quad_offsets *o, c
     LANES_INT_ texels = LANES_FROM_BLOCKS_(ROWS_(0), ROWS_(1), ROWS_(2), ROWS_(3));
 #undef ROWS_
     return LANES_(add_epi32)(
-        LANES_(madd_epi16)(LANES_(shuffle_epi8)(texels, above), splat_in_blocks(w->above, i)),
-        LANES_(madd_epi16)(LANES_(shuffle_epi8)(texels, below), splat_in_blocks(w->below, i)));
+        LANES_(madd_epi16)(LANES_(shuffle_epi8)(texels, above), (LANES_INT_)splat_in_blocks(w->above, i)),
+        LANES_(madd_epi16)(LANES_(shuffle_epi8)(texels, below), (LANES_INT_)splat_in_blocks(w->below, i)));
 }
 
-AMB_INLINE void finish_sums(const LANES_INT_ sum[4], colorx *out)
+AMB_INLINE void finish_sums(LANES_INT_ a, LANES_INT_ b, LANES_INT_ c, LANES_INT_ d, colorx *out)
 {
     u32x channel[4];
-    transpose_blocks(sum[0], sum[1], sum[2], sum[3], channel);
+    transpose_blocks(a, b, c, d, channel);
     for (int k = 0; k < 4; k++)
         out->c[k] = i_to_f(u_as_i(channel[k]));
 }
@@ -162,11 +176,10 @@ AMB_INLINE void bilinear_unorm8(const amb_texture *t, const quad_place *at, colo
 {
     quad_offsets o;
     quad_weights w = weights_of(at);
-    LANES_INT_ sum[4];
-    spill_offsets(at, &w, &o);
-    for (int i = 0; i < 4; i++)
-        sum[i] = weigh_quads(t->data, &o, &w, i);
-    finish_sums(sum, out);
+    spill_offsets(at, &o);
+    LOADS_AFTER_(o, w.above, w.below);
+    finish_sums(weigh_quads(t->data, &o, &w, 0), weigh_quads(t->data, &o, &w, 1), weigh_quads(t->data, &o, &w, 2),
+                weigh_quads(t->data, &o, &w, 3), out);
 }
 
 AMB_INLINE void trilinear_unorm8(const amb_texture *t, const quad_place *near, const quad_place *far, f32x blend,
@@ -174,13 +187,14 @@ AMB_INLINE void trilinear_unorm8(const amb_texture *t, const quad_place *near, c
 {
     quad_offsets a, b;
     quad_weights u, v;
-    LANES_INT_ sum[4];
     weights_between(near, far, blend, &u, &v);
-    spill_offsets(near, &u, &a);
-    spill_offsets(far, &v, &b);
-    for (int i = 0; i < 4; i++)
-        sum[i] = LANES_(add_epi32)(weigh_quads(t->data, &a, &u, i), weigh_quads(t->data, &b, &v, i));
-    finish_sums(sum, out);
+    spill_offsets(near, &a);
+    spill_offsets(far, &b);
+    LOADS_AFTER_(a, u.above, u.below);
+    LOADS_AFTER_(b, v.above, v.below);
+#define LEVELS_(i) LANES_(add_epi32)(weigh_quads(t->data, &a, &u, i), weigh_quads(t->data, &b, &v, i))
+    finish_sums(LEVELS_(0), LEVELS_(1), LEVELS_(2), LEVELS_(3), out);
+#undef LEVELS_
 }
 #else
 AMB_INLINE i32x weigh_pair(const u32x word[2], i32x weights, int k)
@@ -216,6 +230,107 @@ AMB_INLINE void trilinear_unorm8(const amb_texture *t, const quad_place *near, c
 }
 #endif
 
+/* ---- HALF4: where the processor converts halves ----------------------------------------------------------------- */
+
+#if AMB_X86 && AMB_LANES > 4
+/* Blocks 0, 2 (…) of a and of b, or 1, 3. */
+AMB_INLINE f32x even_blocks(f32x a, f32x b)
+{
+#if AMB_LANES == 16
+    return (f32x)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0x88);
+#else
+    return (f32x)_mm256_permute2f128_ps((__m256)a, (__m256)b, 0x20);
+#endif
+}
+AMB_INLINE f32x odd_blocks(f32x a, f32x b)
+{
+#if AMB_LANES == 16
+    return (f32x)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0xdd);
+#else
+    return (f32x)_mm256_permute2f128_ps((__m256)a, (__m256)b, 0x31);
+#endif
+}
+/* The first half of the blocks, each twice; or the second half. */
+AMB_INLINE f32x twice(f32x a, int half)
+{
+#if AMB_LANES == 16
+    return (f32x)(half ? _mm512_shuffle_f32x4((__m512)a, (__m512)a, 0xfa)
+                       : _mm512_shuffle_f32x4((__m512)a, (__m512)a, 0x50));
+#else
+    return (f32x)(half ? _mm256_permute2f128_ps((__m256)a, (__m256)a, 0x11)
+                       : _mm256_permute2f128_ps((__m256)a, (__m256)a, 0x00));
+#endif
+}
+
+/* Two texels of a row of the lanes 4j + i, for half of the j: two blocks a lane. */
+AMB_INLINE f32x load_half_pairs(const uint32_t *data, const int32_t *offset, int i, int half)
+{
+#if AMB_LANES == 16
+    const int32_t *first = offset + 8 * half + i;
+    __m256i pairs = _mm256_castsi128_si256(load_quad(data + 2 * (ptrdiff_t)first[0]));
+    return (f32x)_mm512_cvtph_ps(_mm256_inserti128_si256(pairs, load_quad(data + 2 * (ptrdiff_t)first[4]), 1));
+#else
+    return (f32x)_mm256_cvtph_ps(load_quad(data + 2 * (ptrdiff_t)offset[4 * half + i]));
+#endif
+}
+
+AMB_INLINE f32x lerp_half_rows(const uint32_t *data, const quad_offsets *o, f32x fy, int i, int half)
+{
+    return f_lerp(load_half_pairs(data, o->above, i, half), load_half_pairs(data, o->below, i, half), twice(fy, half));
+}
+
+/* The lanes 4j + i between their four texels. */
+AMB_INLINE f32x lerp_half_quads(const uint32_t *data, const quad_offsets *o, const quad_place *at, int i)
+{
+    f32x fy = f_splat_in_blocks(at->fy, i);
+    f32x a = lerp_half_rows(data, o, fy, i, 0), b = lerp_half_rows(data, o, fy, i, 1);
+    return f_lerp(even_blocks(a, b), odd_blocks(a, b), f_splat_in_blocks(at->fx, i));
+}
+
+AMB_INLINE void finish_blocks(f32x a, f32x b, f32x c, f32x d, colorx *out)
+{
+    u32x channel[4];
+    transpose_blocks((LANES_INT_)a, (LANES_INT_)b, (LANES_INT_)c, (LANES_INT_)d, channel);
+    for (int k = 0; k < 4; k++)
+        out->c[k] = f_from_bits(u_as_i(channel[k]));
+}
+
+AMB_INLINE void bilinear_half4(const amb_texture *t, const quad_place *at, colorx *out)
+{
+    quad_offsets o;
+    spill_offsets(at, &o);
+    __asm__("" : "+m"(o));
+#define PART_(i) lerp_half_quads(t->data, &o, at, i)
+    finish_blocks(PART_(0), PART_(1), PART_(2), PART_(3), out);
+#undef PART_
+}
+
+AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, const quad_place *far, f32x blend,
+                                colorx *out)
+{
+    quad_offsets a, b;
+    f32x fx = near->fx;
+    spill_offsets(near, &a);
+    spill_offsets(far, &b);
+    LOADS_AFTER_(a, blend, fx);
+    LOADS_AFTER_(b, blend, fx);
+#define PART_(i)                                                                                         \
+    between_levels(lerp_half_quads(t->data, &a, near, i), lerp_half_quads(t->data, &b, far, i), \
+                   f_splat_in_blocks(blend, i))
+    finish_blocks(PART_(0), PART_(1), PART_(2), PART_(3), out);
+#undef PART_
+}
+#define FILTERS_HALF4_ 1
+#else
+AMB_INLINE void bilinear_half4(const amb_texture *t, const quad_place *at, colorx *out) { (void)t, (void)at, (void)out; }
+AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, const quad_place *far, f32x blend,
+                                colorx *out)
+{
+    (void)t, (void)near, (void)far, (void)blend, (void)out;
+}
+#define FILTERS_HALF4_ 0
+#endif
+
 /* ---- filters ---------------------------------------------------------------------------------------------------- */
 
 /* One texel, unfiltered. */
@@ -233,6 +348,10 @@ AMB_INLINE void filter_bilinear(const amb_texture *t, texture_storage store, con
         bilinear_unorm8(t, at, out);
         return;
     }
+    if (FILTERS_HALF4_ && store == STORE_HALF4) {
+        bilinear_half4(t, at, out);
+        return;
+    }
     quad_words q;
     fetch_quad(t, store, at, &q);
     for (int k = 0; k < storage_channels(store); k++)
@@ -247,14 +366,15 @@ AMB_INLINE void filter_trilinear(const amb_texture *t, texture_storage store, co
         trilinear_unorm8(t, near, far, blend, out);
         return;
     }
+    if (FILTERS_HALF4_ && store == STORE_HALF4) {
+        trilinear_half4(t, near, far, blend, out);
+        return;
+    }
     quad_words a, b;
-    maskx between = blend > 0.0f; /* a far texel that is infinite must not count where it has no weight */
     fetch_quad(t, store, near, &a);
     fetch_quad(t, store, far, &b);
-    for (int k = 0; k < storage_channels(store); k++) {
-        f32x near_k = bilinear_channel(store, near, &a, k), far_k = bilinear_channel(store, far, &b, k);
-        out->c[k] = f_sel(between, f_lerp(near_k, far_k, blend), near_k);
-    }
+    for (int k = 0; k < storage_channels(store); k++)
+        out->c[k] = between_levels(bilinear_channel(store, near, &a, k), bilinear_channel(store, far, &b, k), blend);
 }
 
 AMB_INLINE void lerp_colors(texture_storage store, const colorx *a, const colorx *b, f32x t, colorx *out)

@@ -43,12 +43,12 @@ AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x
     }
     levelx far = level_2d(r, next_level(r->texture, levels->near));
     quad_place far_at = place_quad(&far, &u, &v);
-    filter_trilinear(r->texture, store, &at, &far_at, levels->blend, out);
+    filter_trilinear(r->texture, store, &at, &far_at, blend_of(levels), out);
 }
 
 AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
 {
-    lod_levels levels = levels_of_detail(r->texture, r->sampler, r->detail);
+    lod_levels levels = pick_levels(r->texture, r->sampler, r->detail);
     colorx sum;
     if (r->most_taps <= 1) {
         sample_levels_2d(r, store, r->uv, &levels, &sum);
@@ -89,7 +89,7 @@ AMB_INLINE v4x sample_tap_2d(const amb_texture *texture, const amb_sampler *samp
                              f32x v, f32x detail, bool squared)
 {
     const request_2d r = {.texture = texture, .sampler = sampler};
-    lod_levels levels = levels_of_detail(texture, sampler, (detailx){detail, squared});
+    lod_levels levels = pick_levels(texture, sampler, (detailx){detail, squared});
     colorx c;
     sample_levels_2d(&r, store, v2x_of(u, v), &levels, &c);
     return finish_color(store, &c);
@@ -136,9 +136,9 @@ AMB_INLINE v4x sample_2d(const request_2d *r)
     return sample_2d_float4(r);
 }
 
-v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod)
+v4x amb_sample_2d_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v, f32x lod)
 {
-    return tap_2d(texture, sampler, uv, (detailx){lod, false});
+    return tap_2d(texture, sampler, v2x_of(u, v), (detailx){lod, false});
 }
 
 AMB_INLINE footprintx footprint_2d(const amb_texture *texture, v2x ddx, v2x ddy, int max_anisotropy)
@@ -186,8 +186,9 @@ v4x amb_sample_2d_array_grad(const amb_texture *texture, const amb_sampler *samp
 }
 
 #if AMB_LANES > 1
-v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv)
+v4x amb_sample_2d_at(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v)
 {
+    const v2x uv = {u, v};
     v2x ddx = v2x_of(f_ddx(uv.x), f_ddx(uv.y)), ddy = v2x_of(f_ddy(uv.x), f_ddy(uv.y));
     if (sampler->max_anisotropy <= 1)
         return tap_2d(texture, sampler, uv,
@@ -227,15 +228,15 @@ AMB_INLINE void sample_level_3d(const amb_texture *t, const amb_sampler *s, text
 
 AMB_INLINE v4x sample_3d(const amb_texture *t, const amb_sampler *s, texture_storage store, v3x uvw, f32x lod)
 {
-    lod_levels levels = pick_levels(t, s, lod);
+    lod_levels levels = levels_of_lod(t, s, lod);
     uvw = v3x_of(finite_or_zero(uvw.x), finite_or_zero(uvw.y), finite_or_zero(uvw.z));
     colorx out, far;
     sample_level_3d(t, s, store, uvw, levels.near, &out);
     if (levels.two) {
-        maskx between = levels.blend > 0.0f;
+        f32x blend = blend_of(&levels);
         sample_level_3d(t, s, store, uvw, next_level(t, levels.near), &far);
         for (int k = 0; k < storage_channels(store); k++)
-            out.c[k] = f_sel(between, f_lerp(out.c[k], far.c[k], levels.blend), out.c[k]);
+            out.c[k] = between_levels(out.c[k], far.c[k], blend);
     }
     return finish_color(store, &out);
 }

@@ -2,7 +2,7 @@
  * may be called from any thread, but not of a texture that is being changed.
  *
  * Sampling follows the GL/D3D formulas (texel centres at .5, LOD from screen derivatives), with weights in full float
- * precision where a GPU has 8 bits. The lanes form is compiled once per instruction set. NaN or infinite coordinates
+ * precision (14 bits for unorm formats) where a GPU has 8 bits. The lanes form is compiled once per instruction set. NaN or infinite coordinates
  * sample coordinate 0: never out of bounds. */
 #ifndef AMBIANCE_TEXTURE_H
 #define AMBIANCE_TEXTURE_H
@@ -98,22 +98,40 @@ typedef struct amb_sampler {
 /* Lanes forms. uv: 0…1 across the texture, v down. direction: any length. Results: r, g, b linear, a.
  * The plain form takes its derivatives from the 2×2 quads of the block (4 lanes or more); the _grad form takes
  * d(uv)/dx and d(uv)/dy per pixel; the _lod form a level (0 = full size). The level of detail computed from derivatives
- * is within 1e-4 of the exact one; a lane's colour is within a few ULP plus 2⁻²³·size of its steepest texel difference.
+ * is within 1e-4 of the exact one; a lane's colour is within a few ULP plus 2⁻²³·size of its steepest texel difference,
+ * and for unorm formats within 2⁻¹² more (their weights have 14 bits).
+ * Structures of lanes are passed in memory; the forms named _at, which the others call, take them in registers.
  * Sources: OpenGL 4.6 §8.14 and table 8.19, EXT_texture_filter_anisotropic. */
 #if AMB_LANES > 1
-#define amb_sample_2d WIDE(amb_sample_2d)
-v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv);
-#define amb_sample_cube WIDE(amb_sample_cube)
-v4x amb_sample_cube(const amb_texture *texture, const amb_sampler *sampler, v3x direction);
+#define amb_sample_2d_at WIDE(amb_sample_2d_at)
+v4x amb_sample_2d_at(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v);
+AMB_INLINE v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *sampler, v2x uv)
+{
+    return amb_sample_2d_at(texture, sampler, uv.x, uv.y);
+}
+#define amb_sample_cube_at WIDE(amb_sample_cube_at)
+v4x amb_sample_cube_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z);
+AMB_INLINE v4x amb_sample_cube(const amb_texture *texture, const amb_sampler *sampler, v3x direction)
+{
+    return amb_sample_cube_at(texture, sampler, direction.x, direction.y, direction.z);
+}
 #endif
 #define amb_sample_2d_grad WIDE(amb_sample_2d_grad)
 v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v2x uv, v2x ddx, v2x ddy);
-#define amb_sample_2d_lod WIDE(amb_sample_2d_lod)
-v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod);
+#define amb_sample_2d_lod_at WIDE(amb_sample_2d_lod_at)
+v4x amb_sample_2d_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v, f32x lod);
+AMB_INLINE v4x amb_sample_2d_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, f32x lod)
+{
+    return amb_sample_2d_lod_at(texture, sampler, uv.x, uv.y, lod);
+}
 #define amb_sample_cube_grad WIDE(amb_sample_cube_grad)
 v4x amb_sample_cube_grad(const amb_texture *texture, const amb_sampler *sampler, v3x direction, v3x ddx, v3x ddy);
-#define amb_sample_cube_lod WIDE(amb_sample_cube_lod)
-v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x lod);
+#define amb_sample_cube_lod_at WIDE(amb_sample_cube_lod_at)
+v4x amb_sample_cube_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z, f32x lod);
+AMB_INLINE v4x amb_sample_cube_lod(const amb_texture *texture, const amb_sampler *sampler, v3x direction, f32x lod)
+{
+    return amb_sample_cube_lod_at(texture, sampler, direction.x, direction.y, direction.z, lod);
+}
 #define amb_sample_3d_lod WIDE(amb_sample_3d_lod)
 v4x amb_sample_3d_lod(const amb_texture *texture, const amb_sampler *sampler, v3x uvw, f32x lod);
 
