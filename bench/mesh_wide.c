@@ -28,10 +28,11 @@ static void fragment(const amb_fs_in *in, amb_fs_out *out)
 {
     const mesh_uniforms *u = in->uniforms;
     const mesh_varyings *v = in->varyings;
-    v4x albedo = amb_sample_2d(u->color, &u->surface, v->uv), texel = amb_sample_2d(u->normal, &u->surface, v->uv);
+    v4x map[2];
+    amb_sample_2d_pair(u->color, u->normal, &u->surface, v->uv, map);
 
     v3x across = normal_map_bitangent(v4x_xyz(v->tangent), v->normal, v->tangent.w);
-    v3x n = normal_map_apply(normal_map_decode(v4x_xyz(texel), 1.0f), v4x_xyz(v->tangent), across, v->normal);
+    v3x n = normal_map_apply(normal_map_decode(v4x_xyz(map[1]), 1.0f), v4x_xyz(v->tangent), across, v->normal);
     v3x to_eye = v3x_normalize(v3x_sub(v3x_splat(u->eye), v->world)), to_sun = v3x_splat(u->light.to_sun);
 
     f32x facing = f_max(v3x_dot(n, to_sun), f_set(0.0f));
@@ -40,7 +41,7 @@ static void fragment(const amb_fs_in *in, amb_fs_out *out)
     v4x sky = amb_sample_cube(u->environment, &u->sky, v3x_reflect(v3x_neg(to_eye), n));
 
     v3x lit = v3x_add(v3x_splat(u->light.ambient_rgb), v3x_scale(v3x_splat(u->light.sun_rgb), facing));
-    v3x rgb = v3x_mul(v4x_xyz(albedo), lit);
+    v3x rgb = v3x_mul(v4x_xyz(map[0]), lit);
     rgb = v3x_add(rgb, v3x_scale(v3x_splat(u->light.sun_rgb), highlight));
     rgb = v3x_add(rgb, v3x_scale(v4x_xyz(sky), reflectance));
     out->color[0] = v4x_of3(rgb, f_set(1.0f));

@@ -23,9 +23,10 @@ AMB_INLINE levelx level_2d(const request_2d *r, i32x level)
     return l;
 }
 
-/* A lane between two levels blends them; the second is fetched only when some lane needs it. */
-AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x uv, const lod_levels *levels,
-                                 colorx *out)
+/* A lane between two levels blends them; the second is fetched only when some lane needs it. `other`: NULL, or a texture
+ * laid out alike, whose colour at the same place becomes out[1]. */
+AMB_INLINE void sample_levels_2d(const request_2d *r, const amb_texture *other, texture_storage store, v2x uv,
+                                 const lod_levels *levels, colorx *out)
 {
     const amb_wrap *wrap = r->sampler->wrap;
     uv.x = finite_or_zero(uv.x);
@@ -33,17 +34,25 @@ AMB_INLINE void sample_levels_2d(const request_2d *r, texture_storage store, v2x
     wrapped u = wrap_coordinate(uv.x, wrap[0]), v = wrap_coordinate(uv.y, wrap[1]);
     levelx near = level_2d(r, levels->near);
     if (r->sampler->filter == AMB_NEAREST) {
-        filter_nearest(r->texture, store, place_texel(&near, &u, &v), out);
+        i32x texel = place_texel(&near, &u, &v);
+        filter_nearest(r->texture, store, texel, out);
+        if (other)
+            filter_nearest(other, store, texel, out + 1);
         return;
     }
     quad_place at = place_quad(&near, &u, &v);
     if (!levels->two) {
         filter_bilinear(r->texture, store, &at, out);
+        if (other)
+            filter_bilinear(other, store, &at, out + 1);
         return;
     }
     levelx far = level_2d(r, next_level(r->texture, levels->near));
     quad_place far_at = place_quad(&far, &u, &v);
-    filter_trilinear(r->texture, store, &at, &far_at, blend_of(levels), out);
+    f32x blend = blend_of(levels);
+    filter_trilinear(r->texture, store, &at, &far_at, blend, out);
+    if (other)
+        filter_trilinear(other, store, &at, &far_at, blend, out + 1);
 }
 
 AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
@@ -51,7 +60,7 @@ AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
     lod_levels levels = pick_levels(r->texture, r->sampler, r->detail);
     colorx sum;
     if (r->most_taps <= 1) {
-        sample_levels_2d(r, store, r->uv, &levels, &sum);
+        sample_levels_2d(r, NULL, store, r->uv, &levels, &sum);
         return finish_color(store, &sum);
     }
     memset(&sum, 0, sizeof sum);
@@ -61,7 +70,7 @@ AMB_INLINE v4x sample_request_2d(const request_2d *r, texture_storage store)
             break;
         f32x offset = (float)i / (r->taps + 1.0f) - 0.5f;
         colorx one;
-        sample_levels_2d(r, store, v2x_add(r->uv, v2x_scale(r->axis, offset)), &levels, &one);
+        sample_levels_2d(r, NULL, store, v2x_add(r->uv, v2x_scale(r->axis, offset)), &levels, &one);
         for (int k = 0; k < storage_channels(store); k++)
             sum.c[k] = f_sel(wanted, sum.c[k] + one.c[k], sum.c[k]);
     }
@@ -84,27 +93,37 @@ static __attribute__((noinline)) v4x sample_2d_float4(const request_2d *r)
     return sample_request_2d(r, STORE_FLOAT4);
 }
 
-/* One tap of a texture without layers, the usual case: its numbers stay in registers. */
-AMB_INLINE v4x sample_tap_2d(const amb_texture *texture, const amb_sampler *sampler, texture_storage store, f32x u,
-                             f32x v, f32x detail, bool squared)
+/* One tap without layers, the usual case, of one texture or of two laid out alike: its numbers stay in registers. */
+AMB_INLINE void sample_tap_2d(const amb_texture *texture, const amb_texture *other, const amb_sampler *sampler,
+                              texture_storage store, v2x uv, detailx detail, v4x *out)
 {
     const request_2d r = {.texture = texture, .sampler = sampler};
-    lod_levels levels = pick_levels(texture, sampler, (detailx){detail, squared});
-    colorx c;
-    sample_levels_2d(&r, store, v2x_of(u, v), &levels, &c);
-    return finish_color(store, &c);
+    lod_levels levels = pick_levels(texture, sampler, detail);
+    colorx c[2];
+    sample_levels_2d(&r, other, store, uv, &levels, c);
+    out[0] = finish_color(store, &c[0]);
+    if (other)
+        out[1] = finish_color(store, &c[1]);
 }
-#define TAP_2D_(name, store)                                                                                         \
-    static __attribute__((noinline)) v4x name(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x detail, \
-                                              bool squared)                                                          \
-    {                                                                                                                \
-        return sample_tap_2d(t, s, store, u, v, detail, squared);                                                    \
+#define TAPS_2D_(name, store)                                                                                      \
+    static __attribute__((noinline)) v4x tap_2d_##name(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, \
+                                                       f32x detail, bool squared)                                  \
+    {                                                                                                              \
+        v4x color;                                                                                                 \
+        sample_tap_2d(t, NULL, s, store, v2x_of(u, v), (detailx){detail, squared}, &color);                        \
+        return color;                                                                                              \
+    }                                                                                                              \
+    static __attribute__((noinline, unused)) void tap_pair_##name(const amb_texture *t, const amb_texture *other,  \
+                                                                  const amb_sampler *s, f32x u, f32x v,            \
+                                                                  f32x detail, bool squared, v4x *out)             \
+    {                                                                                                              \
+        sample_tap_2d(t, other, s, store, v2x_of(u, v), (detailx){detail, squared}, out);                          \
     }
-TAP_2D_(tap_2d_unorm8, STORE_UNORM8)
-TAP_2D_(tap_2d_half4, STORE_HALF4)
-TAP_2D_(tap_2d_float1, STORE_FLOAT1)
-TAP_2D_(tap_2d_float4, STORE_FLOAT4)
-#undef TAP_2D_
+TAPS_2D_(unorm8, STORE_UNORM8)
+TAPS_2D_(half4, STORE_HALF4)
+TAPS_2D_(float1, STORE_FLOAT1)
+TAPS_2D_(float4, STORE_FLOAT4)
+#undef TAPS_2D_
 
 AMB_INLINE v4x tap_2d(const amb_texture *t, const amb_sampler *s, v2x uv, detailx d)
 {
@@ -172,7 +191,7 @@ v4x amb_sample_2d_grad(const amb_texture *texture, const amb_sampler *sampler, v
 
 v4x amb_sample_2d_array_lod(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer, f32x lod)
 {
-    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .detail = {lod, false}, .taps = f_set(1.0f), .most_taps = 1};
+    request_2d r = {.texture = texture, .sampler = sampler, .uv = uv, .detail = {lod, false}, .most_taps = 1};
     r.layered = true, r.layer = clamp_layer(texture, layer);
     return sample_2d(&r);
 }
@@ -186,14 +205,49 @@ v4x amb_sample_2d_array_grad(const amb_texture *texture, const amb_sampler *samp
 }
 
 #if AMB_LANES > 1
+AMB_INLINE detailx detail_of_quads(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v)
+{
+    v2x ddx = v2x_of(f_ddx(u), f_ddx(v)), ddy = v2x_of(f_ddy(u), f_ddy(v));
+    return detail_of_square(texture, sampler, footprint_2d(texture, ddx, ddy, 1).square);
+}
+
 v4x amb_sample_2d_at(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v)
 {
-    const v2x uv = {u, v};
-    v2x ddx = v2x_of(f_ddx(uv.x), f_ddx(uv.y)), ddy = v2x_of(f_ddy(uv.x), f_ddy(uv.y));
     if (sampler->max_anisotropy <= 1)
-        return tap_2d(texture, sampler, uv,
-                      detail_of_square(texture, sampler, footprint_2d(texture, ddx, ddy, 1).square));
-    return amb_sample_2d_grad(texture, sampler, uv, ddx, ddy);
+        return tap_2d(texture, sampler, v2x_of(u, v), detail_of_quads(texture, sampler, u, v));
+    return amb_sample_2d_grad(texture, sampler, v2x_of(u, v), v2x_of(f_ddx(u), f_ddx(v)), v2x_of(f_ddy(u), f_ddy(v)));
+}
+
+/* Do all levels' texels lie alike? */
+AMB_INLINE bool laid_out_alike(const amb_texture *a, const amb_texture *b)
+{
+    return a->storage == b->storage && a->info.kind == b->info.kind && a->info.width == b->info.width &&
+           a->info.height == b->info.height && a->info.depth == b->info.depth && a->info.levels == b->info.levels;
+}
+
+void amb_sample_2d_pair_at(const amb_texture *first, const amb_texture *second, const amb_sampler *sampler, f32x u,
+                           f32x v, v4x out[2])
+{
+    if (sampler->max_anisotropy > 1 || !laid_out_alike(first, second)) {
+        out[0] = amb_sample_2d_at(first, sampler, u, v);
+        out[1] = amb_sample_2d_at(second, sampler, u, v);
+        return;
+    }
+    detailx d = detail_of_quads(first, sampler, u, v);
+    switch (first->storage) {
+    case STORE_UNORM8:
+        tap_pair_unorm8(first, second, sampler, u, v, d.value, d.squared, out);
+        return;
+    case STORE_HALF4:
+        tap_pair_half4(first, second, sampler, u, v, d.value, d.squared, out);
+        return;
+    case STORE_FLOAT1:
+        tap_pair_float1(first, second, sampler, u, v, d.value, d.squared, out);
+        return;
+    case STORE_FLOAT4:
+        break;
+    }
+    tap_pair_float4(first, second, sampler, u, v, d.value, d.squared, out);
 }
 
 v4x amb_sample_2d_array(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer)

@@ -109,6 +109,16 @@ AMB_INLINE v4x amb_sample_2d(const amb_texture *texture, const amb_sampler *samp
 {
     return amb_sample_2d_at(texture, sampler, uv.x, uv.y);
 }
+/* Two textures at one place, first and second: as amb_sample_2d of each, but a colour and a normal map of one size and
+ * format find their texels once and wait for them together. */
+#define amb_sample_2d_pair_at WIDE(amb_sample_2d_pair_at)
+void amb_sample_2d_pair_at(const amb_texture *first, const amb_texture *second, const amb_sampler *sampler, f32x u,
+                           f32x v, v4x out[2]);
+AMB_INLINE void amb_sample_2d_pair(const amb_texture *first, const amb_texture *second, const amb_sampler *sampler,
+                                   v2x uv, v4x out[2])
+{
+    amb_sample_2d_pair_at(first, second, sampler, uv.x, uv.y, out);
+}
 #define amb_sample_cube_at WIDE(amb_sample_cube_at)
 v4x amb_sample_cube_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z);
 AMB_INLINE v4x amb_sample_cube(const amb_texture *texture, const amb_sampler *sampler, v3x direction)
