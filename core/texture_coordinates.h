@@ -1,5 +1,5 @@
-/* From coordinates to texels: wrapping, layers, cube faces. Texels are counted from the border: 0 is the texel before the
- * first. Shared by the samplers (texture*_wide.c). */
+/* From coordinates to texels: wrapping, layers, cube faces. Texels are counted from the border: 0 is the texel before
+ * the first. Shared by the samplers (texture*_wide.c). */
 #ifndef AMBIANCE_CORE_TEXTURE_COORDINATES_H
 #define AMBIANCE_CORE_TEXTURE_COORDINATES_H
 

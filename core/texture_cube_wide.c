@@ -80,15 +80,15 @@ AMB_INLINE v4x sample_tap_cube(const amb_texture *texture, const amb_sampler *sa
     return finish_color(store, &c);
 }
 
-#define CUBE_OF_STORAGE_(name, store)                                                                      \
-    static __attribute__((noinline)) v4x sample_cube_##name(const request_cube *r)                         \
-    {                                                                                                      \
-        return sample_request_cube(r, store);                                                              \
-    }                                                                                                      \
-    static __attribute__((noinline)) v4x tap_cube_##name(const amb_texture *t, const amb_sampler *s, f32x x, \
-                                                         f32x y, f32x z, f32x detail, bool squared)        \
-    {                                                                                                      \
-        return sample_tap_cube(t, s, store, x, y, z, detail, squared);                                     \
+#define CUBE_OF_STORAGE_(name, store)                                                                                  \
+    static __attribute__((noinline)) v4x sample_cube_##name(const request_cube *r)                                     \
+    {                                                                                                                  \
+        return sample_request_cube(r, store);                                                                          \
+    }                                                                                                                  \
+    static __attribute__((noinline))                                                                                   \
+    v4x tap_cube_##name(const amb_texture *t, const amb_sampler *s, f32x x, f32x y, f32x z, f32x detail, bool squared) \
+    {                                                                                                                  \
+        return sample_tap_cube(t, s, store, x, y, z, detail, squared);                                                 \
     }
 CUBE_OF_STORAGE_(unorm8, STORE_UNORM8)
 CUBE_OF_STORAGE_(half4, STORE_HALF4)

@@ -18,7 +18,7 @@ AMB_INLINE int storage_channels(texture_storage store) { return store == STORE_F
 
 typedef struct {
     f32x c[4];
-} colorx; /* as stored, UNORM8 in 0…255; while it is filtered, in 0…255·UNORM8_ONE */
+} colorx;                /* as stored, UNORM8 in 0…255; while it is filtered, in 0…255·UNORM8_ONE */
 #define UNORM8_ONE 16384 /* the sum of a filter's weights */
 
 /* Channel k of a texel's words. */

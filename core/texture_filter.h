@@ -92,10 +92,7 @@ AMB_INLINE i32x halves_mul(i32x a, i32x b) { return (i32x)LANES_(mulhrs_epi16)((
 #else
 AMB_INLINE i32x low_half(i32x a) { return u_as_i(i_as_u(a) << 16) >> 16; }
 AMB_INLINE i32x join_halves(i32x low, i32x high) { return (low & 0xffff) | raise_half(high); }
-AMB_INLINE i32x halves_sub(i32x a, i32x b)
-{
-    return join_halves(low_half(a) - low_half(b), (a >> 16) - (b >> 16));
-}
+AMB_INLINE i32x halves_sub(i32x a, i32x b) { return join_halves(low_half(a) - low_half(b), (a >> 16) - (b >> 16)); }
 AMB_INLINE i32x halves_mul(i32x a, i32x b)
 {
     return join_halves((low_half(a) * low_half(b) + 0x4000) >> 15, ((a >> 16) * (b >> 16) + 0x4000) >> 15);
@@ -314,7 +311,7 @@ AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, co
     spill_offsets(far, &b);
     LOADS_AFTER_(a, blend, fx);
     LOADS_AFTER_(b, blend, fx);
-#define PART_(i)                                                                                         \
+#define PART_(i)                                                                                \
     between_levels(lerp_half_quads(t->data, &a, near, i), lerp_half_quads(t->data, &b, far, i), \
                    f_splat_in_blocks(blend, i))
     finish_blocks(PART_(0), PART_(1), PART_(2), PART_(3), out);
@@ -322,7 +319,10 @@ AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, co
 }
 #define FILTERS_HALF4_ 1
 #else
-AMB_INLINE void bilinear_half4(const amb_texture *t, const quad_place *at, colorx *out) { (void)t, (void)at, (void)out; }
+AMB_INLINE void bilinear_half4(const amb_texture *t, const quad_place *at, colorx *out)
+{
+    (void)t, (void)at, (void)out;
+}
 AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, const quad_place *far, f32x blend,
                                 colorx *out)
 {

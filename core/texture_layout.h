@@ -1,9 +1,9 @@
 /* How textures lie in memory: shared by the maker (texture*.c) and the samplers (texture*_wide.c).
  *
  * Every level has a border of one texel all around, so that a footprint never wraps: texel x + 1 is always the next one
- * in memory and row y + 1 the next row, from -1 on. Those of 2D and 3D levels hold the opposite side (what REPEAT needs;
- * CLAMP and MIRROR never give them weight), those of cube faces the neighbouring faces; a cube's corner is the average
- * of the three texels that meet there.
+ * in memory and row y + 1 the next row, from -1 on. Those of 2D and 3D levels hold the opposite side (what REPEAT
+ * needs; CLAMP and MIRROR never give them weight), those of cube faces the neighbouring faces; a cube's corner is the
+ * average of the three texels that meet there.
  *
  * Texels are stored as one of four kinds that decode exactly: */
 #ifndef AMBIANCE_CORE_TEXTURE_LAYOUT_H

@@ -23,8 +23,8 @@ AMB_INLINE levelx level_2d(const request_2d *r, i32x level)
     return l;
 }
 
-/* A lane between two levels blends them; the second is fetched only when some lane needs it. `other`: NULL, or a texture
- * laid out alike, whose colour at the same place becomes out[1]. */
+/* A lane between two levels blends them; the second is fetched only when some lane needs it. `other`: NULL, or a
+ * texture laid out alike, whose colour at the same place becomes out[1]. */
 AMB_INLINE void sample_levels_2d(const request_2d *r, const amb_texture *other, texture_storage store, v2x uv,
                                  const lod_levels *levels, colorx *out)
 {
@@ -105,19 +105,19 @@ AMB_INLINE void sample_tap_2d(const amb_texture *texture, const amb_texture *oth
     if (other)
         out[1] = finish_color(store, &c[1]);
 }
-#define TAPS_2D_(name, store)                                                                                      \
-    static __attribute__((noinline)) v4x tap_2d_##name(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, \
-                                                       f32x detail, bool squared)                                  \
-    {                                                                                                              \
-        v4x color;                                                                                                 \
-        sample_tap_2d(t, NULL, s, store, v2x_of(u, v), (detailx){detail, squared}, &color);                        \
-        return color;                                                                                              \
-    }                                                                                                              \
-    static __attribute__((noinline, unused)) void tap_pair_##name(const amb_texture *t, const amb_texture *other,  \
-                                                                  const amb_sampler *s, f32x u, f32x v,            \
-                                                                  f32x detail, bool squared, v4x *out)             \
-    {                                                                                                              \
-        sample_tap_2d(t, other, s, store, v2x_of(u, v), (detailx){detail, squared}, out);                          \
+#define TAPS_2D_(name, store)                                                                                        \
+    static __attribute__((noinline))                                                                                 \
+    v4x tap_2d_##name(const amb_texture *t, const amb_sampler *s, f32x u, f32x v, f32x detail, bool squared)         \
+    {                                                                                                                \
+        v4x color;                                                                                                   \
+        sample_tap_2d(t, NULL, s, store, v2x_of(u, v), (detailx){detail, squared}, &color);                          \
+        return color;                                                                                                \
+    }                                                                                                                \
+    static __attribute__((noinline, unused)) void tap_pair_##name(const amb_texture *t, const amb_texture *other,    \
+                                                                  const amb_sampler *s, f32x u, f32x v, f32x detail, \
+                                                                  bool squared, v4x *out)                            \
+    {                                                                                                                \
+        sample_tap_2d(t, other, s, store, v2x_of(u, v), (detailx){detail, squared}, out);                            \
     }
 TAPS_2D_(unorm8, STORE_UNORM8)
 TAPS_2D_(half4, STORE_HALF4)

@@ -122,6 +122,123 @@ static void test_quads_give_the_gradients(void **unused)
     }
 }
 
+/* Whatever two textures are, a pair of look-ups gives what each gives alone. */
+static void test_pairs_are_two_look_ups(void **unused)
+{
+    (void)unused;
+    static batch p;
+    static float alone[2][BATCH][4], pair[2][BATCH][4];
+    uint32_t state = 6;
+    for (int f = 0; f < TEXELS; f++)
+        for (int unlike = 0; unlike < 4; unlike++) {
+            amb_texel other = unlike == 1 ? every_texel[(f + 1) % TEXELS] : every_texel[f];
+            both b[2] = {make_both(AMB_TEXTURE_2D, every_texel[f], 16, 8, 1, true, &state),
+                         make_both(AMB_TEXTURE_2D, other, unlike == 2 ? 17 : 16, 8, 1, unlike != 3, &state)};
+            const amb_texture *textures[2] = {b[0].texture, b[1].texture};
+            for (int round = 0; round < 6; round++) {
+                amb_sampler s = random_sampler(&state);
+                s.max_anisotropy = round % 3 == 2 ? 8 : 1;
+                random_probes(&p, false, 4.0, &state);
+                for (const int *lanes = probe_lanes() + 1; *lanes; lanes++) {
+                    for (int k = 0; k < 2; k++)
+                        probe_texture(*lanes, textures[k], &s, PROBE_2D_QUAD, p.in, BATCH, alone[k]);
+                    probe_pair(*lanes, textures, &s, p.in, BATCH, pair[0], pair[1]);
+                    assert_memory_equal(pair, alone, sizeof pair);
+                }
+            }
+            close_both(&b[0]);
+            close_both(&b[1]);
+        }
+}
+
+/* ---- 8-bit formats ---------------------------------------------------------------------------------------------- */
+
+enum { BIG = 8, SMALL = 4 };
+
+static double wrapped_code(const unsigned char *codes, int size, int x, int y, int channel)
+{
+    return codes[(((y + size) % size) * size + (x + size) % size) * 4 + channel];
+}
+
+/* Bilinear, repeating, in 0…255. */
+static double filtered_code(const unsigned char *codes, int size, const float at[2], int channel)
+{
+    double x = (double)at[0] * size - 0.5, y = (double)at[1] * size - 0.5, fx = x - floor(x), fy = y - floor(y);
+    int left = (int)floor(x), top = (int)floor(y);
+    double above = wrapped_code(codes, size, left, top, channel) * (1 - fx) +
+                   wrapped_code(codes, size, left + 1, top, channel) * fx;
+    double below = wrapped_code(codes, size, left, top + 1, channel) * (1 - fx) +
+                   wrapped_code(codes, size, left + 1, top + 1, channel) * fx;
+    return above * (1 - fy) + below * fy;
+}
+
+/* Their weights have 14 bits: colours are within 2⁻¹² of full scale, between texels and between levels. */
+static void test_unorm_weights(void **unused)
+{
+    (void)unused;
+    uint32_t state = 13;
+    static batch p;
+    static unsigned char codes[(BIG * BIG + SMALL * SMALL) * 4];
+    double worst = 0.0;
+    for (int round = 0; round < 200; round++) {
+        for (size_t i = 0; i < sizeof codes; i++)
+            codes[i] =
+                round % 2 ? (unsigned char)(pair_random(&state) >> 9) : (unsigned char)-(pair_random(&state) >> 9 & 1);
+        amb_texture_desc desc = {.kind = AMB_TEXTURE_2D,
+                                 .texel = AMB_TEXEL_RGBA8,
+                                 .width = BIG,
+                                 .height = BIG,
+                                 .levels = 2,
+                                 .data = codes,
+                                 .data_bytes = sizeof codes};
+        both b = {0};
+        assert_int_equal(amb_texture_create(&desc, &b.texture, NULL), AMB_OK);
+        amb_sampler s = {.filter = AMB_TRILINEAR};
+        for (int i = 0; i < BATCH; i++) {
+            p.in[i].at[0] = (float)pair_uniform(&state, 0, 1), p.in[i].at[1] = (float)pair_uniform(&state, 0, 1);
+            p.in[i].lod = (float)pair_uniform(&state, 0, 1);
+        }
+        run_everywhere(&b, &s, PROBE_2D_LOD, &p);
+        for (int i = 0; i < BATCH; i++)
+            for (int k = 0; k < 4; k++) {
+                double near = filtered_code(codes, BIG, p.in[i].at, k);
+                double far = filtered_code(codes + BIG * BIG * 4, SMALL, p.in[i].at, k);
+                double exact = (near + (far - near) * (double)p.in[i].lod) / 255.0;
+                worst = fmax(worst, fabs((double)p.out[i][k] - exact));
+            }
+        amb_texture_close(&b.texture);
+    }
+    assert_true(worst < 1.0 / 4096.0);
+    assert_true(worst > 1.0 / 65536.0); /* else the textures were too tame to find the worst */
+}
+
+/* Wherever a texture has one colour, that is its colour: to the last bit the code's value. */
+static void test_unorm_constants_stay(void **unused)
+{
+    (void)unused;
+    uint32_t state = 14;
+    static batch p;
+    static unsigned char codes[16 * 16 * 4];
+    for (int code = 0; code < 256; code++) {
+        memset(codes, code, sizeof codes);
+        amb_texture_desc desc = {.kind = AMB_TEXTURE_2D,
+                                 .texel = AMB_TEXEL_RGBA8,
+                                 .width = 16,
+                                 .height = 16,
+                                 .make_mips = true,
+                                 .data = codes,
+                                 .data_bytes = sizeof codes};
+        both b = {0};
+        assert_int_equal(amb_texture_create(&desc, &b.texture, NULL), AMB_OK);
+        amb_sampler s = {.filter = (amb_filter)(code % 3)};
+        random_probes(&p, false, 4.0, &state);
+        run_everywhere(&b, &s, PROBE_2D_LOD, &p);
+        for (int i = 0; i < BATCH; i++)
+            assert_true(p.out[i][0] == (float)code * (1.0f / 255.0f));
+        amb_texture_close(&b.texture);
+    }
+}
+
 /* ---- cube seams ------------------------------------------------------------------------------------------------- */
 
 /* Along great circles and through corners, neighbouring directions never jump by more than the steepest slope allows.
@@ -264,6 +381,8 @@ int main(void)
         cmocka_unit_test(test_quads_give_the_gradients),   cmocka_unit_test(test_cube_is_continuous),
         cmocka_unit_test(test_corner_is_average_of_three), cmocka_unit_test(test_cube_orientation),
         cmocka_unit_test(test_hostile_coordinates),        cmocka_unit_test(test_nan_and_infinity_sample_zero),
+        cmocka_unit_test(test_pairs_are_two_look_ups),     cmocka_unit_test(test_unorm_weights),
+        cmocka_unit_test(test_unorm_constants_stay),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,6 +37,19 @@ void probe_texture(int lanes, const amb_texture *texture, const amb_sampler *sam
     }
 }
 
+void probe_pair(int lanes, const amb_texture *const texture[2], const amb_sampler *sampler, const probe *in, int count,
+                float (*first)[4], float (*second)[4])
+{
+    if (lanes == 4)
+        probe_pair_x4(texture, sampler, in, count, first, second);
+#ifdef __x86_64__
+    if (lanes == 8)
+        probe_pair_x8(texture, sampler, in, count, first, second);
+    if (lanes == 16)
+        probe_pair_x16(texture, sampler, in, count, first, second);
+#endif
+}
+
 void probe_half(int lanes, half_op op, float *floats, uint32_t *words, int count)
 {
     switch (lanes) {

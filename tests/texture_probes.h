@@ -39,6 +39,16 @@ void probe_texture_x8(const amb_texture *texture, const amb_sampler *sampler, pr
 void probe_texture_x16(const amb_texture *texture, const amb_sampler *sampler, probe_mode mode, const probe *in,
                        int count, float (*out)[4]);
 
+/* amb_sample_2d_pair over quads of four probes in a row. lanes: 4, 8 or 16. */
+void probe_pair(int lanes, const amb_texture *const texture[2], const amb_sampler *sampler, const probe *in, int count,
+                float (*first)[4], float (*second)[4]);
+void probe_pair_x4(const amb_texture *const texture[2], const amb_sampler *sampler, const probe *in, int count,
+                   float (*first)[4], float (*second)[4]);
+void probe_pair_x8(const amb_texture *const texture[2], const amb_sampler *sampler, const probe *in, int count,
+                   float (*first)[4], float (*second)[4]);
+void probe_pair_x16(const amb_texture *const texture[2], const amb_sampler *sampler, const probe *in, int count,
+                    float (*first)[4], float (*second)[4]);
+
 /* half.h over arrays; count a multiple of 16. */
 typedef enum half_op { HALF_DECODE, HALF_ENCODE, SMALL_DECODE, SMALL_ENCODE } half_op;
 /* DECODE: words in; floats out (SMALL: 3 a word). ENCODE: floats in (SMALL: 3 a word); words out. */

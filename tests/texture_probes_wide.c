@@ -74,6 +74,30 @@ void probe_texture_wide(const amb_texture *texture, const amb_sampler *sampler, 
     }
 }
 
+#if AMB_LANES > 1
+static void put_lanes(v4x color, float (*out)[4])
+{
+    for (int k = 0; k < AMB_LANES; k++) {
+        v4 one = v4x_lane(color, k);
+        memcpy(out[k], &one, sizeof one);
+    }
+}
+
+#define probe_pair_wide WIDE(probe_pair)
+void probe_pair_wide(const amb_texture *const texture[2], const amb_sampler *sampler, const probe *in, int count,
+                     float (*first)[4], float (*second)[4])
+{
+    const int apart = (int)(sizeof *in / sizeof(float));
+    for (int i = 0; i < count; i += AMB_LANES) {
+        v3x at = vector(in[i].at, apart);
+        v4x color[2];
+        amb_sample_2d_pair(texture[0], texture[1], sampler, v2x_of(at.x, at.y), color);
+        put_lanes(color[0], first + i);
+        put_lanes(color[1], second + i);
+    }
+}
+#endif
+
 #define probe_half_wide WIDE(probe_half)
 void probe_half_wide(half_op op, float *floats, uint32_t *words, int count)
 {

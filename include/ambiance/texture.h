@@ -2,8 +2,8 @@
  * may be called from any thread, but not of a texture that is being changed.
  *
  * Sampling follows the GL/D3D formulas (texel centres at .5, LOD from screen derivatives), with weights in full float
- * precision (14 bits for unorm formats) where a GPU has 8 bits. The lanes form is compiled once per instruction set. NaN or infinite coordinates
- * sample coordinate 0: never out of bounds. */
+ * precision (14 bits for unorm formats) where a GPU has 8 bits. The lanes form is compiled once per instruction set.
+ * NaN or infinite coordinates sample coordinate 0: never out of bounds. */
 #ifndef AMBIANCE_TEXTURE_H
 #define AMBIANCE_TEXTURE_H
 
