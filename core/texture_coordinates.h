@@ -90,20 +90,41 @@ AMB_INLINE v3x to_face(const facex *f, v3x d)
                   f_sel(f->negative, -major, major));
 }
 
+/* Where a direction meets the cube. A zero direction looks at the middle of +x; components that are not finite count
+ * as 0. */
+typedef struct {
+    facex frame;
+    maskx somewhere;
+    f32x major; /* above 0 somewhere */
+    f32x s, t;  /* -1…1 across the face */
+} cube_look;
+
+AMB_INLINE cube_look look_at_cube(v3x direction)
+{
+    v3x d = v3x_of(finite_or_zero(direction.x), finite_or_zero(direction.y), finite_or_zero(direction.z));
+    cube_look look = {.frame = pick_face(d)};
+    v3x on_face = to_face(&look.frame, d);
+    look.somewhere = on_face.z > 0.0f;
+    look.major = on_face.z;
+    look.s = f_sel(look.somewhere, on_face.x / on_face.z, f_set(0.0f));
+    look.t = f_sel(look.somewhere, on_face.y / on_face.z, f_set(0.0f));
+    return look;
+}
+
 typedef struct {
     i32x face;
     f32x u, v; /* 0…1 across the face */
 } cube_point;
 
-/* A zero direction looks at the middle of +x; components that are not finite count as 0. */
+AMB_INLINE cube_point point_on_face(const cube_look *look)
+{
+    return (cube_point){look->frame.face, look->s * 0.5f + 0.5f, look->t * 0.5f + 0.5f};
+}
+
 AMB_INLINE cube_point point_on_cube(v3x direction)
 {
-    v3x d = v3x_of(finite_or_zero(direction.x), finite_or_zero(direction.y), finite_or_zero(direction.z));
-    facex f = pick_face(d);
-    v3x on_face = to_face(&f, d);
-    maskx somewhere = on_face.z > 0.0f;
-    return (cube_point){f.face, f_sel(somewhere, on_face.x / on_face.z, f_set(0.0f)) * 0.5f + 0.5f,
-                        f_sel(somewhere, on_face.y / on_face.z, f_set(0.0f)) * 0.5f + 0.5f};
+    cube_look look = look_at_cube(direction);
+    return point_on_face(&look);
 }
 
 #endif

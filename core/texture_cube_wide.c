@@ -4,10 +4,10 @@
 /* ---- footprints ------------------------------------------------------------------------------------------------- */
 
 /* Squared length in texels of level 0 of a change of direction: (ds - s·dm)/m on the face plane, half a face a unit. */
-AMB_INLINE f32x face_footprint(v3x on_face, v3x change, f32x half_width)
+AMB_INLINE f32x face_footprint(const cube_look *look, v3x change, f32x scale)
 {
-    f32x scale = half_width / on_face.z, s = on_face.x / on_face.z, t = on_face.y / on_face.z;
-    f32x ds = (change.x - s * change.z) * scale, dt = (change.y - t * change.z) * scale;
+    change = to_face(&look->frame, change);
+    f32x ds = (change.x - look->s * change.z) * scale, dt = (change.y - look->t * change.z) * scale;
     return ds * ds + dt * dt;
 }
 
@@ -29,24 +29,23 @@ AMB_INLINE levelx level_of_face(const amb_texture *t, i32x level, i32x face)
     return l;
 }
 
-AMB_INLINE void sample_levels_cube(const request_cube *r, texture_storage store, v3x direction,
+AMB_INLINE void sample_levels_cube(const amb_texture *texture, amb_filter filter, texture_storage store, cube_point p,
                                    const lod_levels *levels, colorx *out)
 {
-    cube_point p = point_on_cube(direction);
     const wrapped u = {p.u, false}, v = {p.v, false};
-    levelx near = level_of_face(r->texture, levels->near, p.face);
-    if (r->sampler->filter == AMB_NEAREST) {
-        filter_nearest(r->texture, store, place_texel(&near, &u, &v), out);
+    levelx near = level_of_face(texture, levels->near, p.face);
+    if (filter == AMB_NEAREST) {
+        filter_nearest(texture, store, place_texel(&near, &u, &v), out);
         return;
     }
     quad_place at = place_quad(&near, &u, &v);
     if (!levels->two) {
-        filter_bilinear(r->texture, store, &at, out);
+        filter_bilinear(texture, store, &at, out);
         return;
     }
-    levelx far = level_of_face(r->texture, next_level(r->texture, levels->near), p.face);
+    levelx far = level_of_face(texture, next_level(texture, levels->near), p.face);
     quad_place far_at = place_quad(&far, &u, &v);
-    filter_trilinear(r->texture, store, &at, &far_at, blend_of(levels), out);
+    filter_trilinear(texture, store, &at, &far_at, blend_of(levels), out);
 }
 
 AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)
@@ -60,7 +59,8 @@ AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)
             break;
         f32x offset = (float)i / (r->taps + 1.0f) - 0.5f;
         colorx one;
-        sample_levels_cube(r, store, v3x_add(r->direction, v3x_scale(r->axis, offset)), &levels, &one);
+        cube_point p = point_on_cube(v3x_add(r->direction, v3x_scale(r->axis, offset)));
+        sample_levels_cube(r->texture, r->sampler->filter, store, p, &levels, &one);
         for (int k = 0; k < storage_channels(store); k++)
             sum.c[k] = f_sel(wanted, sum.c[k] + one.c[k], sum.c[k]);
     }
@@ -70,25 +70,24 @@ AMB_INLINE v4x sample_request_cube(const request_cube *r, texture_storage store)
 }
 
 /* One tap, the usual case: its numbers stay in registers. */
-AMB_INLINE v4x sample_tap_cube(const amb_texture *texture, const amb_sampler *sampler, texture_storage store, f32x x,
-                               f32x y, f32x z, f32x detail, bool squared)
+AMB_INLINE v4x sample_tap_cube(const amb_texture *texture, const amb_sampler *sampler, texture_storage store,
+                               cube_point p, detailx detail)
 {
-    const request_cube r = {.texture = texture, .sampler = sampler};
-    lod_levels levels = pick_levels(texture, sampler, (detailx){detail, squared});
+    lod_levels levels = pick_levels(texture, sampler, detail);
     colorx c;
-    sample_levels_cube(&r, store, v3x_of(x, y, z), &levels, &c);
+    sample_levels_cube(texture, sampler->filter, store, p, &levels, &c);
     return finish_color(store, &c);
 }
 
-#define CUBE_OF_STORAGE_(name, store)                                                                                  \
-    static __attribute__((noinline)) v4x sample_cube_##name(const request_cube *r)                                     \
-    {                                                                                                                  \
-        return sample_request_cube(r, store);                                                                          \
-    }                                                                                                                  \
-    static __attribute__((noinline))                                                                                   \
-    v4x tap_cube_##name(const amb_texture *t, const amb_sampler *s, f32x x, f32x y, f32x z, f32x detail, bool squared) \
-    {                                                                                                                  \
-        return sample_tap_cube(t, s, store, x, y, z, detail, squared);                                                 \
+#define CUBE_OF_STORAGE_(name, store)                                                                           \
+    static __attribute__((noinline)) v4x sample_cube_##name(const request_cube *r)                              \
+    {                                                                                                           \
+        return sample_request_cube(r, store);                                                                   \
+    }                                                                                                           \
+    static __attribute__((noinline)) v4x tap_cube_##name(const amb_texture *t, const amb_sampler *s, i32x face, \
+                                                         f32x u, f32x v, f32x detail, bool squared)             \
+    {                                                                                                           \
+        return sample_tap_cube(t, s, store, (cube_point){face, u, v}, (detailx){detail, squared});              \
     }
 CUBE_OF_STORAGE_(unorm8, STORE_UNORM8)
 CUBE_OF_STORAGE_(half4, STORE_HALF4)
@@ -111,38 +110,36 @@ AMB_INLINE v4x sample_cube(const request_cube *r)
     return sample_cube_float4(r);
 }
 
-AMB_INLINE v4x tap_cube(const amb_texture *t, const amb_sampler *s, v3x direction, detailx d)
+AMB_INLINE v4x tap_cube(const amb_texture *t, const amb_sampler *s, cube_point p, detailx d)
 {
-    const f32x x = direction.x, y = direction.y, z = direction.z;
     switch (t->storage) {
     case STORE_UNORM8:
-        return tap_cube_unorm8(t, s, x, y, z, d.value, d.squared);
+        return tap_cube_unorm8(t, s, p.face, p.u, p.v, d.value, d.squared);
     case STORE_HALF4:
-        return tap_cube_half4(t, s, x, y, z, d.value, d.squared);
+        return tap_cube_half4(t, s, p.face, p.u, p.v, d.value, d.squared);
     case STORE_FLOAT1:
-        return tap_cube_float1(t, s, x, y, z, d.value, d.squared);
+        return tap_cube_float1(t, s, p.face, p.u, p.v, d.value, d.squared);
     case STORE_FLOAT4:
         break;
     }
-    return tap_cube_float4(t, s, x, y, z, d.value, d.squared);
+    return tap_cube_float4(t, s, p.face, p.u, p.v, d.value, d.squared);
 }
 
 v4x amb_sample_cube_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z, f32x lod)
 {
-    return tap_cube(texture, sampler, v3x_of(x, y, z), (detailx){lod, false});
+    return tap_cube(texture, sampler, point_on_cube(v3x_of(x, y, z)), (detailx){lod, false});
 }
 
 AMB_INLINE v4x sample_with_gradients(const amb_texture *texture, const amb_sampler *sampler, v3x direction, v3x ddx,
                                      v3x ddy)
 {
-    facex f = pick_face(direction);
-    v3x on_face = to_face(&f, direction);
-    f32x half_width = f_set(0.5f * texture->width[0]);
-    footprintx p = footprint(face_footprint(on_face, to_face(&f, ddx), half_width),
-                             face_footprint(on_face, to_face(&f, ddy), half_width), sampler->max_anisotropy);
+    cube_look look = look_at_cube(direction);
+    f32x scale = f_sel(look.somewhere, 0.5f * texture->width[0] / look.major, f_set(0.0f));
+    footprintx p =
+        footprint(face_footprint(&look, ddx, scale), face_footprint(&look, ddy, scale), sampler->max_anisotropy);
     detailx detail = detail_of_square(texture, sampler, p.square);
     if (sampler->max_anisotropy <= 1)
-        return tap_cube(texture, sampler, direction, detail);
+        return tap_cube(texture, sampler, point_on_face(&look), detail);
     request_cube r = {.texture = texture,
                       .sampler = sampler,
                       .direction = direction,

@@ -6,6 +6,14 @@
 #include <ambiance/math.h>
 #include <ambiance/vec.h>
 
+/* cosineᵉ, cosine ≥ 0, exponent > 0. Whole exponents are multiplied out: within 2⁻²⁴·exponent of the value. */
+AMB_INLINE f32x specular_power(f32x cosine, float exponent)
+{
+    if (exponent <= 1024.0f && (float)(int)exponent == exponent)
+        return f_powi(cosine, (int)exponent);
+    return f_pow(cosine, f_set(exponent));
+}
+
 /* max(0, r·v)ᵉ, r the mirror of l about n; 0 where the light is below the surface. exponent > 0.
  * B. T. Phong, CACM 18(6), 1975. */
 AMB_INLINE f32x specular_phong(v3x n, v3x l, v3x v, float exponent)
@@ -13,7 +21,7 @@ AMB_INLINE f32x specular_phong(v3x n, v3x l, v3x v, float exponent)
     f32x n_dot_l = v3x_dot(n, l);
     v3x mirror = v3x_sub(v3x_scale(n, 2.0f * n_dot_l), l);
     f32x cosine = f_max(v3x_dot(mirror, v), f_set(0.0f));
-    return f_sel(n_dot_l > 0.0f, f_pow(cosine, f_set(exponent)), f_set(0.0f));
+    return f_sel(n_dot_l > 0.0f, specular_power(cosine, exponent), f_set(0.0f));
 }
 
 /* max(0, n·h)ᵉ, h halfway between l and v; 0 where the light is below the surface. exponent > 0.
@@ -22,7 +30,7 @@ AMB_INLINE f32x specular_blinn_phong(v3x n, v3x l, v3x v, float exponent)
 {
     v3x halfway = v3x_normalize(v3x_add(l, v));
     f32x cosine = f_max(v3x_dot(n, halfway), f_set(0.0f));
-    return f_sel(v3x_dot(n, l) > 0.0f, f_pow(cosine, f_set(exponent)), f_set(0.0f));
+    return f_sel(v3x_dot(n, l) > 0.0f, specular_power(cosine, exponent), f_set(0.0f));
 }
 
 /* Beckmann's distribution of microfacet slopes, per steradian: e^(-tan²θ/m²)/(π m² cos⁴θ), θ between normal and half

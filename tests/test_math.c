@@ -162,6 +162,24 @@ static void stated_ulp_of_pow(void **state)
     assert_true(w.ulp <= 1.5);
 }
 
+/* f_powi at one lane; the specular lobes' tests hold its lanes to that. */
+static void stated_ulp_of_powi(void **state)
+{
+    (void)state;
+    float a[BATCH];
+    for (int n = 0; n <= 1024; n = n < 20 ? n + 1 : n * 9 / 8) {
+        double worst_share = 0.0;
+        lanes_floats_in((uint64_t)n, -2.0f, 2.0f, a, BATCH);
+        for (int i = 0; i < BATCH; i++) {
+            double exact = pow((double)a[i], n);
+            if (fabs(exact) < (double)FLT_MIN || fabs(exact) > (double)FLT_MAX)
+                continue;
+            worst_share = fmax(worst_share, lanes_ulp(f_powi(a[i], n), exact) / (n > 1 ? n - 1 : 1));
+        }
+        assert_true(worst_share <= (n > 1 ? 1.0 : 0.0));
+    }
+}
+
 static void stated_ulp_of_atan2(void **state)
 {
     (void)state;
@@ -322,6 +340,7 @@ int main(void)
         cmocka_unit_test(stated_ulp_over_every_exponent),
         cmocka_unit_test(trigonometry_next_to_quarter_turns),
         cmocka_unit_test(stated_ulp_of_pow),
+        cmocka_unit_test(stated_ulp_of_powi),
         cmocka_unit_test(stated_ulp_of_atan2),
         cmocka_unit_test(edges_follow_annex_f),
         cmocka_unit_test(exact_values),

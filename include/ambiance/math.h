@@ -200,6 +200,19 @@ AMB_INLINE f32x f_pow(f32x base, f32x exponent)
     return f_sel((exponent == 0.0f) | (base == 1.0f), f_set(1.0f), power);
 }
 
+/* baseⁿ for one n ≥ 0 in all lanes, by squaring: ≤ n - 1 ULP while no result is denormal. A dozen operations where f_pow
+ * takes a hundred. */
+AMB_INLINE f32x f_powi(f32x base, int n)
+{
+    f32x power = f_set(1.0f);
+    for (; n > 0; n >>= 1) {
+        if (n & 1)
+            power = power * base;
+        base = base * base;
+    }
+    return power;
+}
+
 /* ---- trigonometry (radians) ------------------------------------------------------------------------------------- */
 
 /* a ≥ 0 as quadrant·π/2 + r + r_low. Cody–Waite with an 11+11+11+24 bit π/2 up to 12 000, where every product but the
