@@ -13,6 +13,9 @@ static tile_box box_of(const raster_triangle *t, unsigned shift)
                       t->v2_y1 >> 16 >> shift};
 }
 
+#define SEVERAL (UINT32_MAX - 1)
+#define LARGE UINT32_MAX
+
 static bool is_large(tile_box b) { return (b.x1 - b.x0 + 1) * (b.y1 - b.y0 + 1) > RASTER_LARGE_TILES; }
 
 static tile_box box_union(tile_box a, tile_box b)
@@ -27,34 +30,61 @@ static void set_bounds(raster_chunk *chunk, tile_box all)
     chunk->tile_x1 = (uint16_t)all.x1, chunk->tile_y1 = (uint16_t)all.y1;
 }
 
-/* Also finds the tiles that the triangles' boxes touch. */
-static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
+/* Counts every tile's triangles. Leaves in tile_of the only tile of a triangle or what else it is. all: tiles of the
+ * large ones. */
+static uint32_t count_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift, uint32_t *tile_of,
+                              tile_box *all)
 {
+    const uint32_t tiles_x = (uint32_t)pass->tiles_x;
     uint32_t large = 0;
-    tile_box all = {UINT16_MAX, UINT16_MAX, 0, 0};
     for (uint32_t i = 0; i < chunk->triangle_count; i++) {
         tile_box b = box_of(&chunk->triangle[i], shift);
-        all = box_union(all, b);
-        if (is_large(b)) {
+        uint32_t first = b.y0 * tiles_x + b.x0, last = b.y1 * tiles_x + b.x1;
+        tile_of[i] = first;
+        if (first == last) {
+            chunk->tile_start[first]++;
+        } else if (is_large(b)) {
+            tile_of[i] = LARGE;
+            *all = box_union(*all, b);
             large++;
-            continue;
+        } else {
+            tile_of[i] = SEVERAL;
+            for (uint32_t y = b.y0; y <= b.y1; y++)
+                for (uint32_t x = b.x0; x <= b.x1; x++)
+                    chunk->tile_start[y * tiles_x + x]++;
         }
-        for (uint32_t y = b.y0; y <= b.y1; y++)
-            for (uint32_t x = b.x0; x <= b.x1; x++)
-                chunk->tile_start[y * (uint32_t)pass->tiles_x + x]++;
     }
-    set_bounds(chunk, all);
     return large;
 }
 
-static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift)
+/* Turns counts into every tile's end: placing moves it down to the start. all: also holds the tiles that have any. */
+static uint32_t sum_entries(const amb_pass *pass, raster_chunk *chunk, tile_box *all)
 {
-    for (uint32_t i = chunk->triangle_count; i-- > 0;) { /* backwards: starts move down to their final places */
-        tile_box b = box_of(&chunk->triangle[i], shift);
-        if (is_large(b)) {
-            chunk->large[--chunk->large_count] = (uint16_t)i;
+    uint32_t entries = 0, *start = chunk->tile_start;
+    for (uint32_t y = 0; y < (uint32_t)pass->tiles_y; y++)
+        for (uint32_t x = 0; x < (uint32_t)pass->tiles_x; x++, start++) {
+            if (*start > 0)
+                *all = box_union(*all, (tile_box){x, y, x, y});
+            entries += *start;
+            *start = entries;
+        }
+    *start = entries;
+    return entries;
+}
+
+static void place_entries(const amb_pass *pass, raster_chunk *chunk, unsigned shift, const uint32_t *tile_of)
+{
+    uint16_t *large = chunk->large + chunk->large_count;
+    for (uint32_t i = chunk->triangle_count; i-- > 0;) {
+        if (tile_of[i] < SEVERAL) {
+            chunk->entry[--chunk->tile_start[tile_of[i]]] = (uint16_t)i;
             continue;
         }
+        if (tile_of[i] == LARGE) {
+            *--large = (uint16_t)i;
+            continue;
+        }
+        tile_box b = box_of(&chunk->triangle[i], shift);
         for (uint32_t y = b.y0; y <= b.y1; y++)
             for (uint32_t x = b.x0; x <= b.x1; x++)
                 chunk->entry[--chunk->tile_start[y * (uint32_t)pass->tiles_x + x]] = (uint16_t)i;
@@ -83,19 +113,16 @@ void raster_bin(const amb_pass *pass, raster_chunk *chunk, raster_scratch *scrat
     if (!chunk->tile_start)
         goto error;
     memset(chunk->tile_start, 0, (tiles + 1) * sizeof *chunk->tile_start);
-    uint32_t large = count_entries(pass, chunk, shift), entries = 0;
-    for (size_t i = 0; i < tiles; i++) { /* each tile's end; placing moves it down to the start */
-        entries += chunk->tile_start[i];
-        chunk->tile_start[i] = entries;
-    }
-    chunk->tile_start[tiles] = entries;
+    tile_box all = {UINT16_MAX, UINT16_MAX, 0, 0};
+    const uint32_t large = count_entries(pass, chunk, shift, scratch->tile_of, &all),
+                   entries = sum_entries(pass, chunk, &all);
     chunk->entry = raster_take(&scratch->batch, ((size_t)entries + large) * sizeof *chunk->entry);
     if (!chunk->entry)
         goto error;
     chunk->large = chunk->entry + entries;
     chunk->large_count = large;
-    place_entries(pass, chunk, shift);
-    chunk->large_count = large;
+    set_bounds(chunk, all);
+    place_entries(pass, chunk, shift, scratch->tile_of);
     return;
 error:
     scratch->failed = true;

@@ -28,6 +28,7 @@
     262144.0 /* the guard band reaches at most this far from the window's centre, at least half */
 #define RASTER_GRID_PIXELS 524288.0f /* window coordinates beyond are nowhere */
 #define RASTER_CHUNK_TRIANGLES 4096  /* triangles a chunk, before clipping */
+#define RASTER_TRIANGLES 65536       /* a chunk may hold after it */
 #define RASTER_CHUNK_VERTICES (3 * RASTER_CHUNK_TRIANGLES)
 #define RASTER_CHUNK_EMITTED 6144 /* vertices and primitives a chunk's geometry shader may emit */
 #define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
@@ -90,6 +91,8 @@ typedef struct raster_triangle {
 
 _Static_assert(RASTER_CHUNK_VERTICES + RASTER_POLYGON * RASTER_CHUNK_TRIANGLES <= 65536, "16-bit vertex numbers");
 _Static_assert((1 + RASTER_POLYGON) * RASTER_CHUNK_EMITTED <= 65536, "16-bit vertex numbers");
+_Static_assert((RASTER_POLYGON - 2) * RASTER_CHUNK_EMITTED <= RASTER_TRIANGLES, "16-bit triangle numbers");
+_Static_assert((RASTER_POLYGON - 2) * RASTER_CHUNK_TRIANGLES <= RASTER_TRIANGLES, "16-bit triangle numbers");
 _Static_assert(RASTER_PATCH_WINDOW <= 32768 && RASTER_CHUNK_TRIANGLES <= 32768, "15-bit primitive numbers");
 
 typedef struct raster_chunk {
@@ -157,9 +160,10 @@ typedef struct raster_scratch {
     uint32_t *corner_memory, *other_memory;
     uint32_t *other_corner[4]; /* room for what a geometry shader makes of them */
     uint32_t corner_count, unique_count;
-    float *group;     /* varyings of one group of vertices, as the shader writes them */
-    float *tile;      /* colour and depth of one tile, block by block */
-    int32_t *packing; /* [wanted][first][lane]: source lanes that bring a block's wanted quads to slots first… */
+    uint32_t *tile_of; /* of the chunk's triangles, while they are binned */
+    float *group;      /* varyings of one group of vertices, as the shader writes them */
+    float *tile;       /* colour and depth of one tile, block by block */
+    int32_t *packing;  /* [wanted][first][lane]: source lanes that bring a block's wanted quads to slots first… */
     int32_t boxes[RASTER_SMALL_BOX * RASTER_SMALL_BOX][RASTER_SMALL_BOX * RASTER_SMALL_BOX];
     /* [width - 1 + RASTER_SMALL_BOX · (height - 1), quads][…]: the quads of a box, x << 8 | y << 16 in pixels */
     size_t primary_capacity, emitted_capacity, tile_capacity;

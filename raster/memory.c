@@ -145,6 +145,7 @@ static void free_scratch(raster_scratch *scratch)
     free(scratch->clip_x);
     free(scratch->code);
     free(scratch->corner_memory);
+    free(scratch->tile_of);
     free(scratch->other_memory);
     free(scratch->group);
     free(scratch->tile);
@@ -204,8 +205,10 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
         s->clip_x = malloc(4 * vertices * sizeof *s->clip_x);
         s->code = malloc(vertices * sizeof *s->code);
         s->corner_memory = malloc(4 * corners * sizeof *s->corner_memory);
+        s->tile_of = malloc(RASTER_TRIANGLES * sizeof *s->tile_of);
         s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
-        if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->group)
+        if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->tile_of ||
+            !s->group)
             return false;
         memset(s->group, 0, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
         s->clip_y = s->clip_x + vertices;
