@@ -18,7 +18,8 @@ typedef struct small_group {
     f32x bias[3], inverse_area;
     f32x z0, dz1, dz2, inverse_w[3], depth_bias;
     i32x primitive_front;
-    const float *varying[3][AMB_LANES];
+    const uint32_t *vertex;            /* the chunk's */
+    int32_t at[3][AMB_LANES];          /* words from there to the varyings of each triangle's vertices */
     int count;                         /* quads */
     int32_t quad[RASTER_GROUP_QUADS];  /* triangle | x << 8 | y << 16, pixels; | covered pixels << 24, once sieved */
     int32_t place[RASTER_GROUP_QUADS]; /* floats from the tile's first to the quad's plane 0 */
@@ -278,7 +279,7 @@ static inline void place_row(const raster_tile *tile, const small_group *m, cons
     for (int k = 0; k < 3; k++) {
         q->p[k] = weight[k] * permute(m->inverse_w[k], triangle);
         for (int i = 0; i < RASTER_QUADS; i++)
-            q->varying[k][i] = m->varying[k][row[i] & 255];
+            q->varying[k][i] = (const float *)(const void *)(m->vertex + m->at[k][row[i] & 255]);
     }
 }
 
@@ -299,9 +300,10 @@ static inline void gather_small(const raster_tile *tile, raster_shading *s, cons
 {
     gather_edges(tile, g, m);
     prepare_group(s, g, m, first, end);
+    m->vertex = s->chunk->vertex;
     for (int k = 0; k < 3; k++)
-        for (int n = 0; n < AMB_LANES; n++)
-            m->varying[k][n] = raster_vertex_at(s->chunk, g->number[k][n])->varying;
+        i_store(m->at[k],
+                i_load((const int32_t *)(const void *)g->number[k]) * (int32_t)s->chunk->stride + RASTER_VERTEX_WORDS);
     list_quads(tile, g, m, first, end);
 }
 

@@ -267,6 +267,20 @@ static void play_unbinned(const raster_tile *tile, raster_shading *s, raster_que
     }
 }
 
+/* Asks for what the next group will read: its vertices, and the triangles of the one after it. Half of them will do:
+ * neighbours in a bin are mostly neighbours in memory. */
+static inline void prefetch_group(const raster_chunk *chunk, const uint16_t *next, const uint16_t *end)
+{
+    for (ptrdiff_t i = 0; i < AMB_LANES && i < end - next; i += 2) {
+        const raster_triangle *t = &chunk->triangle[next[i]];
+        if (i + AMB_LANES < end - next)
+            __builtin_prefetch(&chunk->triangle[next[i + AMB_LANES]]);
+        __builtin_prefetch(raster_vertex_at(chunk, t->v0_primitive & 0xffffu));
+        __builtin_prefetch(raster_vertex_at(chunk, t->v1_x1 & 0xffffu));
+        __builtin_prefetch(raster_vertex_at(chunk, t->v2_y1 & 0xffffu));
+    }
+}
+
 /* The chunk's binned and large triangles, merged back into their order. */
 static void play_binned(const raster_tile *tile, raster_shading *s, raster_queue *queue, const raster_chunk *chunk,
                         int number)
@@ -283,6 +297,7 @@ static void play_binned(const raster_tile *tile, raster_shading *s, raster_queue
         }
         for (int i = count; i < AMB_LANES; i++)
             index[i] = index[0];
+        prefetch_group(chunk, binned, binned_end);
         play_group(tile, s, queue, chunk, index, count);
     }
 }
