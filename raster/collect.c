@@ -94,11 +94,67 @@ static inline void collect(const raster_chunk *chunk, raster_scratch *scratch, a
     scratch->corner_count = corners;
 }
 
+/* ---- indices that lie close together, as most meshes' do: a table instead -----------------------------------------
+ */
+
+typedef struct index_range {
+    uint32_t low, high;
+} index_range;
+
+static index_range range_of(const uint32_t *index, uint32_t count)
+{
+    index_range r = {UINT32_MAX, 0};
+    for (uint32_t i = 0; i < count; i++) {
+        r.low = index[i] < r.low ? index[i] : r.low;
+        r.high = index[i] > r.high ? index[i] : r.high;
+    }
+    return r;
+}
+
+/* Triangles of one instance whose indices are all valid and span less than RASTER_INDEX_SPAN. False when they are not.
+ */
+static bool collect_near(const raster_chunk *chunk, raster_scratch *scratch)
+{
+    const raster_draw *draw = chunk->draw;
+    const uint32_t primitive = (uint32_t)(chunk->first % draw->per_instance), count = chunk->count;
+    if (count > draw->per_instance - primitive)
+        return false;
+    const uint32_t *index = draw->state.indices + 3 * (size_t)primitive;
+    const index_range r = range_of(index, 3 * count);
+    if (r.high >= draw->state.vertex_count || r.high - r.low >= RASTER_INDEX_SPAN)
+        return false;
+    const int32_t instance = (int32_t)(chunk->first / draw->per_instance);
+    uint16_t *local_of = scratch->local_of; /* 0: not met yet */
+    memset(local_of, 0, (size_t)(r.high - r.low + 1) * sizeof *local_of);
+    uint32_t unique = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) {
+            uint16_t *local = &local_of[*index - r.low];
+            if (*local == 0) {
+                scratch->index[unique] = (int32_t)*index;
+                scratch->instance[unique] = instance;
+                *local = (uint16_t)++unique;
+            }
+            scratch->corner[k][i] = *local - 1u;
+            index++;
+        }
+        scratch->corner[3][i] = (uint32_t)chunk->first + i;
+    }
+    scratch->unique_count = unique;
+    scratch->corner_count = count;
+    return true;
+}
+
 void raster_collect(const raster_chunk *chunk, raster_scratch *scratch)
 {
     const amb_draw *draw = &chunk->draw->state;
+    const bool indexed_triangles = draw->topology == AMB_TRIANGLES && draw->indices;
     scratch->unique_count = 0;
-    if (draw->topology == AMB_TRIANGLES && draw->indices) /* the hot one, with its constants known */
+    if (indexed_triangles && collect_near(chunk, scratch)) {
+        scratch->stats.vertices += scratch->unique_count;
+        return;
+    }
+    if (indexed_triangles) /* with its constants known */
         collect(chunk, scratch, AMB_TRIANGLES, true);
     else
         collect(chunk, scratch, draw->topology, draw->indices != NULL);

@@ -30,6 +30,7 @@
 #define RASTER_CHUNK_TRIANGLES 4096  /* triangles a chunk, before clipping */
 #define RASTER_TRIANGLES 65536       /* a chunk may hold after it */
 #define RASTER_CHUNK_VERTICES (3 * RASTER_CHUNK_TRIANGLES)
+#define RASTER_INDEX_SPAN 32768   /* of a chunk whose indices are looked up in a table */
 #define RASTER_CHUNK_EMITTED 6144 /* vertices and primitives a chunk's geometry shader may emit */
 #define RASTER_PATCH_GROUP 256    /* patches a job of the hull stage */
 #define RASTER_PATCH_WINDOW 16384 /* patches hull-shaded at a time, at most */
@@ -145,6 +146,7 @@ typedef struct raster_scratch {
     raster_arena batch; /* what the batch's chunks hold */
     uint64_t *lookup;   /* index → local vertex: key, generation, local number */
     uint32_t generation;
+    uint16_t *local_of;        /* index less the chunk's lowest → local vertex + 1, where that range is small */
     int32_t *index, *instance; /* of the chunk's unique vertices, padded to the lanes */
     int32_t *patch;            /* of the chunk's points: number in the window */
     float *u, *v;
@@ -305,9 +307,8 @@ void raster_clip(raster_polygon *polygon, unsigned codes, double guard_x, double
 /* The same for the segment from vertex 0 to vertex 1; false when nothing is left. */
 bool raster_clip_line(raster_polygon *line, unsigned codes, double guard_x, double guard_y);
 
-/* The tests' knobs; pixels depend on neither. tile_size: 16, 32, 64 or 128 pixels, 0: what
- * fits best; batch_bytes: what a batch may hold
- * before its tiles are played (0: at least one chunk). */
+/* The tests' knobs; pixels depend on neither. tile_size: 16, 32, 64 or 128 pixels, 0: what fits best; batch_bytes: what
+ * a batch may hold before its tiles are played (0: at least one chunk). */
 amb_status raster_pass_begin(const amb_context *context, const amb_target *target, int tile_size, size_t batch_bytes,
                              amb_pass **out, amb_error *error);
 

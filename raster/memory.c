@@ -140,6 +140,7 @@ bool raster_reserve_triangles(raster_chunk *chunk, raster_scratch *scratch, size
 static void free_scratch(raster_scratch *scratch)
 {
     free(scratch->lookup);
+    free(scratch->local_of);
     free(scratch->index);
     free(scratch->instance);
     free(scratch->clip_x);
@@ -200,6 +201,7 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
         free_scratch(s);
         *s = (raster_scratch){0};
         s->lookup = calloc(LOOKUP_SLOTS, sizeof *s->lookup);
+        s->local_of = malloc(RASTER_INDEX_SPAN * sizeof *s->local_of);
         s->index = malloc(vertices * sizeof *s->index);
         s->instance = malloc(vertices * sizeof *s->instance);
         s->clip_x = malloc(4 * vertices * sizeof *s->clip_x);
@@ -207,8 +209,8 @@ static bool make_scratch(const amb_pass *pass, raster_scratch *s)
         s->corner_memory = malloc(4 * corners * sizeof *s->corner_memory);
         s->tile_of = malloc(RASTER_TRIANGLES * sizeof *s->tile_of);
         s->group = aligned_alloc(64, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
-        if (!s->lookup || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory || !s->tile_of ||
-            !s->group)
+        if (!s->lookup || !s->local_of || !s->index || !s->instance || !s->clip_x || !s->code || !s->corner_memory ||
+            !s->tile_of || !s->group)
             return false;
         memset(s->group, 0, (size_t)AMB_MAX_VARYINGS * 16 * sizeof *s->group);
         s->clip_y = s->clip_x + vertices;
