@@ -75,14 +75,16 @@ static size_t blocks_of(const raster_tile *tile)
     return (size_t)tile->blocks_x * (size_t)(tile->pass->tile_size / AMB_BLOCK_H);
 }
 
-static void fill(const raster_tile *tile, int plane, float value)
+/* A plane of all samples, or of one: see below. */
+static void fill(const raster_tile *tile, int plane, size_t samples, float value)
 {
-    const size_t blocks = blocks_of(tile);
+    const size_t blocks = blocks_of(tile), block_floats = (size_t)block_planes(tile) * AMB_LANES;
     for (size_t i = 0; i < blocks; i++)
-        f_store(tile->data + (i * (size_t)block_planes(tile) + (size_t)plane) * AMB_LANES, f_set(value));
+        for (size_t n = 0; n < samples; n++)
+            f_store(tile->data + i * block_floats + ((size_t)plane * samples + n) * AMB_LANES, f_set(value));
 }
 
-/* Tiles come and go as if pixels had one sample, each block's planes at its front. This gives every sample of a plane
+/* Pixels come and go as if they had one sample, each block's planes at its front. This gives every sample of a plane
  * what the plane so holds, from the last plane on, as planes of all samples lie farther back. */
 static void spread_samples(const raster_tile *tile)
 {
@@ -140,11 +142,11 @@ static void resolve_samples(const raster_tile *tile)
 }
 
 /* Fills an attachment's planes with its pixels, or with its clear value. */
-static void load_attachment(const raster_tile *tile, const raster_attachment *a, bool from_target)
+static void load_attachment(const raster_tile *tile, const raster_attachment *a, bool from_target, size_t samples)
 {
     const bool partial = tile->right < tile->pass->tile_size || tile->bottom < tile->pass->tile_size;
     for (int c = 0; c < a->channels && (!from_target || partial); c++)
-        fill(tile, a->first + c, from_target ? 0.0f : a->clear[c]);
+        fill(tile, a->first + c, samples, from_target ? 0.0f : a->clear[c]);
     for (int c = 0; from_target && a->image && c < a->channels; c++)
         transfer(tile, a->image, c, a->first + c, false);
     if (from_target && a->texture)
@@ -162,11 +164,14 @@ static void store_attachment(const raster_tile *tile, const raster_attachment *a
 static void load_tile(const raster_tile *tile, bool from_target)
 {
     const amb_pass *pass = tile->pass;
-    fill(tile, 0, 0.0f); /* without a depth attachment */
-    load_attachment(tile, &pass->depth, from_target);
-    load_attachment(tile, &pass->stencil, from_target);
+    const size_t samples = from_target ? 1 : (size_t)pass->samples;
+    fill(tile, 0, samples, 0.0f); /* without a depth attachment */
+    load_attachment(tile, &pass->depth, from_target, samples);
+    load_attachment(tile, &pass->stencil, from_target, samples);
     for (int i = 0; i < pass->target_count; i++)
-        load_attachment(tile, &pass->color[i], from_target);
+        load_attachment(tile, &pass->color[i], from_target, samples);
+    if (from_target && pass->samples > 1)
+        spread_samples(tile);
 }
 
 static void store_tile(const raster_tile *tile)
@@ -355,13 +360,10 @@ void raster_tile_play(const amb_pass *pass, int number, raster_scratch *scratch,
     const size_t bytes = raster_tile_floats(pass) * sizeof(float);
     const bool timed = pass->target.time_stages;
     uint64_t lap = raster_start(timed);
-    if (pass->samples > 1 && pass->tile_store[number]) {
+    if (pass->samples > 1 && pass->tile_store[number])
         memcpy(tile.data, pass->tile_store[number], bytes);
-    } else {
+    else
         load_tile(&tile, pass->target.keep || pass->tile_started[number]);
-        if (pass->samples > 1)
-            spread_samples(&tile);
-    }
     lap = raster_lap(timed, tile.stats, AMB_STAGE_TILES, lap);
     const uint64_t nested = tile.stats->ticks[AMB_STAGE_FRAGMENTS] + tile.stats->ticks[AMB_STAGE_OUTPUT];
     const uint16_t *next = pass->tile_chunk + pass->tile_first[number];
