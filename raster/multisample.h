@@ -47,12 +47,13 @@ typedef struct sample_triangle {
     float z0, dz1, dz2, inverse_area, depth_bias;
 } sample_triangle;
 
-static inline void set_sample_edge(const raster_tile *tile, sample_triangle *t, int i, int32_t a, int32_t b,
+/* groups, here and below: tile->sample_groups, which callers may know. */
+static inline void set_sample_edge(const raster_tile *tile, int groups, sample_triangle *t, int i, int32_t a, int32_t b,
                                    int32_t fraction)
 {
     const i32x pixel = (i_lane_index() & 1) * a + (i_lane_index() >> 1 & 1) * b;
     const i32x on_edge = i_set(owns_its_samples(a, b) ? 0 : 1);
-    for (int g = 0; g < tile->sample_groups; g++) {
+    for (int g = 0; g < groups; g++) {
         i32x moved = (tile->sample_x[g] * a + tile->sample_y[g] * b) + fraction, rest = moved & 255;
         i32x excluded = i_sel(rest == 0, on_edge, i_set(0));
         t->offset[i][g] = pixel + (moved >> 8) - excluded;
@@ -66,16 +67,16 @@ static inline f32x sample_depths(const sample_triangle *t, f32x e1, f32x e2)
 }
 
 /* The samples of a quad that the triangle covers, and the depth of all of them. whole: at its first pixel. */
-static inline uint32_t cover_quad(const raster_tile *tile, const sample_triangle *t, const int32_t whole[3],
+static inline uint32_t cover_quad(const raster_tile *tile, int groups, const sample_triangle *t, const int32_t whole[3],
                                   f32x *depth)
 {
     uint32_t covered = 0;
-    for (int g = 0; g < tile->sample_groups; g++) {
+    for (int g = 0; g < groups; g++) {
         i32x e = (t->offset[0][g] + whole[0]) | (t->offset[1][g] + whole[1]) | (t->offset[2][g] + whole[2]);
         covered |= m_bits(e >= 0) << g * AMB_LANES;
     }
     covered &= tile->all_samples;
-    for (int g = 0; g < tile->sample_groups && covered != 0; g++)
+    for (int g = 0; g < groups && covered != 0; g++)
         depth[g] = sample_depths(t, i_to_f(t->offset[1][g] + whole[1]) + t->bias[1][g],
                                  i_to_f(t->offset[2][g] + whole[2]) + t->bias[2][g]);
     return covered;
@@ -161,8 +162,8 @@ static void cover_samples(const raster_tile *tile, raster_shading *s, raster_que
         int32_t whole[3];
         for (int i = 0; i < 3 && c->fits; i++)
             whole[i] = (int32_t)c->edge[i].whole + c->edge[i].a * quad_x + c->edge[i].b * quad_y;
-        any |= q.at.mask[k] =
-            c->fits ? cover_quad(tile, t, whole, depth) : cover_wide_quad(tile, c, quad_x, quad_y, depth);
+        any |= q.at.mask[k] = c->fits ? cover_quad(tile, tile->sample_groups, t, whole, depth)
+                                      : cover_wide_quad(tile, c, quad_x, quad_y, depth);
     }
     if (any == 0)
         return;
@@ -224,7 +225,7 @@ static void play_multisample(const raster_tile *tile, raster_shading *s, raster_
     s->inverse_area = 256.0f / (float)area;
     c.fits = fits_32_bits(x, y, c.best);
     for (int i = 0; i < 3 && c.fits; i++)
-        set_sample_edge(tile, &c.triangle, i, c.edge[i].a, c.edge[i].b, c.edge[i].fraction);
+        set_sample_edge(tile, tile->sample_groups, &c.triangle, i, c.edge[i].a, c.edge[i].b, c.edge[i].fraction);
     play_blocks(tile, s, queue, &c);
 }
 
@@ -265,10 +266,11 @@ static inline void gather_sample_edges(const raster_tile *tile, sample_group *g,
     i_store(g->primitive_front, m->primitive_front);
 }
 
-static inline void set_sample_triangle(const raster_tile *tile, const sample_group *g, int n, sample_triangle *t)
+static inline void set_sample_triangle(const raster_tile *tile, int groups, const sample_group *g, int n,
+                                       sample_triangle *t)
 {
     for (int i = 0; i < 3; i++)
-        set_sample_edge(tile, t, i, g->a[i][n], g->b[i][n], g->fraction[i][n]);
+        set_sample_edge(tile, groups, t, i, g->a[i][n], g->b[i][n], g->fraction[i][n]);
     t->z0 = g->z0[n], t->dz1 = g->dz1[n], t->dz2 = g->dz2[n];
     t->inverse_area = g->inverse_area[n], t->depth_bias = g->depth_bias[n];
 }
@@ -296,8 +298,8 @@ static void play_sample_row(const raster_tile *tile, const amb_draw *draw, raste
 }
 
 /* Tests the covered samples of a quad; the live ones go to the row, or are written where there is no shader. */
-static inline void take_sample_quad(const raster_tile *tile, const amb_draw *draw, raster_queue *queue, sample_group *g,
-                                    int number, uint32_t covered, const f32x *depth)
+static inline void take_sample_quad(const raster_tile *tile, int groups, const amb_draw *draw, raster_queue *queue,
+                                    sample_group *g, int number, uint32_t covered, const f32x *depth)
 {
     const int32_t quad = g->m.quad[number], index = g->m.index[number];
     const maskx front = m_set(g->primitive_front[quad & 255] < 0);
@@ -314,11 +316,11 @@ static inline void take_sample_quad(const raster_tile *tile, const amb_draw *dra
         return;
     }
     if (!tests_late(draw))
-        q->at.mask[k] = test_quad(tile, draw, &q->at, k, covered, front, depth);
+        q->at.mask[k] = test_quad(tile, groups, draw, &q->at, k, covered, front, depth);
     if (q->at.mask[k] == 0)
         return;
-    for (int i = 0; i < tile->sample_groups; i++)
-        q->sample_depth[k * tile->sample_groups + i] = depth[i];
+    for (int i = 0; i < groups; i++)
+        q->sample_depth[k * groups + i] = depth[i];
     q->index[k] = (uint16_t)index;
     g->row[k] = quad;
     queue->waiting_samples[index] |= q->at.mask[k];
@@ -326,8 +328,8 @@ static inline void take_sample_quad(const raster_tile *tile, const amb_draw *dra
         play_sample_row(tile, draw, queue, g);
 }
 
-static void play_small_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *edges,
-                               int first, int end)
+AMB_INLINE void play_grouped_samples(const raster_tile *tile, int groups, raster_shading *s, raster_queue *queue,
+                                     const edge_group *edges, int first, int end)
 {
     sample_group g;
     sample_triangle t;
@@ -341,17 +343,27 @@ static void play_small_samples(const raster_tile *tile, raster_shading *s, raste
         const int32_t quad = g.m.quad[i], x = quad >> 8 & 255, y = quad >> 16 & 255;
         if (n != (quad & 255)) {
             n = quad & 255;
-            set_sample_triangle(tile, &g, n, &t);
+            set_sample_triangle(tile, groups, &g, n, &t);
         }
         int32_t whole[3];
         f32x depth[RASTER_SAMPLE_GROUPS];
         for (int k = 0; k < 3; k++)
             whole[k] = g.whole[k][n] + g.a[k][n] * x + g.b[k][n] * y;
-        uint32_t covered = cover_quad(tile, &t, whole, depth) & all_of_pixels((uint32_t)quad >> 24, 0);
+        uint32_t covered = cover_quad(tile, groups, &t, whole, depth) & all_of_pixels((uint32_t)quad >> 24, 0);
         if (covered != 0)
-            take_sample_quad(tile, s->draw, queue, &g, i, covered, depth);
+            take_sample_quad(tile, groups, s->draw, queue, &g, i, covered, depth);
     }
     play_sample_row(tile, s->draw, queue, &g);
+}
+
+/* Four samples, the usual number, have a form of their own. */
+static void play_small_samples(const raster_tile *tile, raster_shading *s, raster_queue *queue, const edge_group *edges,
+                               int first, int end)
+{
+    if (tile->sample_groups == 4 / RASTER_QUADS)
+        play_grouped_samples(tile, 4 / RASTER_QUADS, s, queue, edges, first, end);
+    else
+        play_grouped_samples(tile, tile->sample_groups, s, queue, edges, first, end);
 }
 
 #else

@@ -72,12 +72,12 @@ static inline void spread_depth(const raster_tile *tile, f32x depth, f32x *sampl
 
 /* ---- tests and stores ------------------------------------------------------------------------------------------- */
 
-/* The samples in `mask` of one quad that pass the draw's tests. */
-static inline uint32_t test_quad(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, int quad,
-                                 uint32_t mask, maskx front, const f32x *depth)
+/* The samples in `mask` of one quad that pass the draw's tests. groups: tile->sample_groups, which callers may know. */
+static inline uint32_t test_quad(const raster_tile *tile, int groups, const amb_draw *draw, const raster_pixels *at,
+                                 int quad, uint32_t mask, maskx front, const f32x *depth)
 {
     uint32_t passed = 0;
-    for (int g = 0; g < tile->sample_groups; g++) {
+    for (int g = 0; g < groups; g++) {
         raster_pixels one = one_group(at, quad, g);
         passed |= m_bits(output_tests(tile, draw, &one, front, depth[g], RASTER_ONE_QUAD)) << g * AMB_LANES;
     }
@@ -89,7 +89,8 @@ static inline void test_samples(const raster_tile *tile, const amb_draw *draw, r
                                 const f32x *depth)
 {
     for (int k = 0; k < RASTER_QUADS; k++)
-        at->mask[k] = test_quad(tile, draw, at, k, at->mask[k], front, depth + k * tile->sample_groups);
+        at->mask[k] =
+            test_quad(tile, tile->sample_groups, draw, at, k, at->mask[k], front, depth + k * tile->sample_groups);
 }
 
 /* Tests the samples of a quad for good and writes depth and stencil, without a shader. */
