@@ -107,7 +107,12 @@ static inline void shade_group(const raster_tile *tile, const amb_draw *draw, co
     const uint64_t start = raster_start(timed);
     if (draw->alpha_to_coverage)
         live &= out.color[0].w >= 0.5f;
-    write_fragments(tile, draw, at, in->front, out.depth, &out, live, late, how);
+    if (late || draw->stencil.on)
+        live = update_depth_stencil(tile, draw, at, in->front, out.depth, live, how);
+    else if (!draw->depth_write_off)
+        store_plane(tile, at, 0, out.depth, live, how);
+    if (m_any(live))
+        store_colors(tile, draw, at, &out, live, how);
     raster_lap(timed, tile->stats, AMB_STAGE_OUTPUT, start);
 }
 

@@ -96,37 +96,58 @@ static inline int64_t best_sample(const raster_tile *tile, const sample_edge *e)
 
 /* ---- block by block --------------------------------------------------------------------------------------------- */
 
+/* Doubles hold what does not fit 32 bits exactly. */
+typedef double f64x __attribute__((vector_size(8 * AMB_LANES)));
+typedef int64_t i64x __attribute__((vector_size(8 * AMB_LANES)));
+
 /* A triangle in a tile. */
 typedef struct sample_cover {
     sample_edge edge[3]; /* from the box's first pixel */
     raster_edge best[3]; /* of each pixel's best sample */
     raster_box box;
-    bool fits; /* 32 bits */
+    bool fits; /* 32 bits: otherwise offsets are in `wide` */
     sample_triangle triangle;
+    f64x wide[3][RASTER_SAMPLE_GROUPS];
 } sample_cover;
 
-/* cover_quad where 32 bits are not enough. x, y: of the quad, from the box's first pixel. */
-static uint32_t cover_wide_quad(const raster_tile *tile, const sample_cover *c, int x, int y, f32x *depth)
+static inline f64x f_to_wide(f32x a) { return __builtin_convertvector(a, f64x); }
+
+/* set_sample_edge where 32 bits are not enough. */
+static void set_wide_edge(const raster_tile *tile, sample_cover *c, int i)
 {
-    uint32_t covered = tile->all_samples;
+    const sample_edge *e = &c->edge[i];
     for (int g = 0; g < tile->sample_groups; g++) {
-        float weight[3][AMB_LANES];
-        for (int i = 0; i < 3; i++)
-            for (int lane = 0; lane < AMB_LANES; lane++) {
-                const sample_edge *e = &c->edge[i];
-                int64_t value = e->fraction + (int64_t)e->a * i_lane(tile->sample_x[g], lane) +
-                                (int64_t)e->b * i_lane(tile->sample_y[g], lane);
-                int64_t whole =
-                    e->whole + (int64_t)e->a * (x + (lane & 1)) + (int64_t)e->b * (y + (lane >> 1 & 1)) + (value >> 8);
-                int32_t rest = (int32_t)(value & 255), excluded = rest == 0 && !owns_its_samples(e->a, e->b);
-                weight[i][lane] =
-                    (float)((double)(whole - excluded) + (double)((float)excluded + (float)rest * (1.0f / 256.0f)));
-                if (whole < excluded)
-                    covered &= ~(1u << (g * AMB_LANES + lane) % 32);
-            }
-        depth[g] = sample_depths(&c->triangle, f_load(weight[1]), f_load(weight[2]));
+        double offset[AMB_LANES];
+        float bias[AMB_LANES];
+        for (int lane = 0; lane < AMB_LANES; lane++) {
+            int64_t moved = (int64_t)e->a * i_lane(tile->sample_x[g], lane) +
+                            (int64_t)e->b * i_lane(tile->sample_y[g], lane) + e->fraction;
+            int32_t rest = (int32_t)(moved & 255), excluded = rest == 0 && !owns_its_samples(e->a, e->b);
+            offset[lane] =
+                (double)((int64_t)e->a * (lane & 1) + (int64_t)e->b * (lane >> 1 & 1) + (moved >> 8) - excluded);
+            bias[lane] = (float)excluded + (float)rest * (1.0f / 256.0f);
+        }
+        memcpy(&c->wide[i][g], offset, sizeof offset);
+        c->triangle.bias[i][g] = f_load(bias);
     }
-    return covered;
+}
+
+/* cover_quad where 32 bits are not enough. */
+static uint32_t cover_wide_quad(const raster_tile *tile, const sample_cover *c, const double whole[3], f32x *depth)
+{
+    uint32_t covered = 0;
+    for (int g = 0; g < tile->sample_groups; g++) {
+        f64x e[3];
+        i64x outside = {0};
+        for (int i = 0; i < 3; i++) {
+            e[i] = c->wide[i][g] + whole[i];
+            outside |= e[i] < 0.0;
+        }
+        covered |= m_bits(__builtin_convertvector(~outside, i32x)) << g * AMB_LANES;
+        depth[g] = sample_depths(&c->triangle, __builtin_convertvector(e[1] + f_to_wide(c->triangle.bias[1][g]), f32x),
+                                 __builtin_convertvector(e[2] + f_to_wide(c->triangle.bias[2][g]), f32x));
+    }
+    return covered & tile->all_samples;
 }
 
 /* An edge's function at the pixels' centres of a block, as a weight. x, y: the block's first pixel, from the box's. */
@@ -160,10 +181,13 @@ static void cover_samples(const raster_tile *tile, raster_shading *s, raster_que
         int quad_x = x + 2 * (k & 1), quad_y = y + (k & 2);
         f32x *depth = q.sample_depth + k * tile->sample_groups;
         int32_t whole[3];
-        for (int i = 0; i < 3 && c->fits; i++)
-            whole[i] = (int32_t)c->edge[i].whole + c->edge[i].a * quad_x + c->edge[i].b * quad_y;
-        any |= q.at.mask[k] = c->fits ? cover_quad(tile, tile->sample_groups, t, whole, depth)
-                                      : cover_wide_quad(tile, c, quad_x, quad_y, depth);
+        double wide[3];
+        for (int i = 0; i < 3; i++) {
+            int64_t value = c->edge[i].whole + (int64_t)c->edge[i].a * quad_x + (int64_t)c->edge[i].b * quad_y;
+            whole[i] = (int32_t)value, wide[i] = (double)value;
+        }
+        any |= q.at.mask[k] =
+            c->fits ? cover_quad(tile, tile->sample_groups, t, whole, depth) : cover_wide_quad(tile, c, wide, depth);
     }
     if (any == 0)
         return;
@@ -224,8 +248,11 @@ static void play_multisample(const raster_tile *tile, raster_shading *s, raster_
     int64_t area = (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
     s->inverse_area = 256.0f / (float)area;
     c.fits = fits_32_bits(x, y, c.best);
-    for (int i = 0; i < 3 && c.fits; i++)
-        set_sample_edge(tile, tile->sample_groups, &c.triangle, i, c.edge[i].a, c.edge[i].b, c.edge[i].fraction);
+    for (int i = 0; i < 3; i++)
+        if (c.fits)
+            set_sample_edge(tile, tile->sample_groups, &c.triangle, i, c.edge[i].a, c.edge[i].b, c.edge[i].fraction);
+        else
+            set_wide_edge(tile, &c, i);
     play_blocks(tile, s, queue, &c);
 }
 

@@ -64,7 +64,6 @@ typedef struct raster_pixels {
 typedef enum raster_layout {
     RASTER_BLOCK,      /* a whole block */
     RASTER_PACKED,     /* quads */
-    RASTER_ONE_SAMPLE, /* of quads */
     RASTER_ONE_QUAD,   /* a lane a sample: one of the quad's groups */
     RASTER_ALL_SAMPLES /* of quads: those in `mask`. What is stored goes to all of them; nothing can be loaded. */
 } raster_layout;
@@ -128,6 +127,11 @@ AMB_INLINE f32x spread_quad(f32x a, int quad)
 AMB_INLINE maskx group_lanes(uint32_t mask, int group)
 {
     return m_from_bits(mask >> group * AMB_LANES & AMB_ALL_LANES);
+}
+
+static inline raster_pixels one_group(const raster_pixels *at, int quad, int group)
+{
+    return (raster_pixels){.quad = {at->quad[quad] + group * AMB_LANES}, .stride = at->stride};
 }
 
 /* Every pixel's value to those of its samples that are in at->mask. */
@@ -414,6 +418,44 @@ static __attribute__((noinline)) void store_rounded(const raster_tile *tile, con
         store_target(tile, at, RASTER_SMALL_FLOAT, srgb, plane, 3, mode, source, live, how);
 }
 
+static inline void spread_color(const v4x *color, int quad, v4x *to)
+{
+    *to = (v4x){spread_quad(color->x, quad), spread_quad(color->y, quad), spread_quad(color->z, quad),
+                spread_quad(color->w, quad)};
+}
+
+/* An attachment that is read: quad by quad, a lane a sample. */
+static __attribute__((noinline)) void blend_samples(const raster_tile *tile, const amb_draw *draw,
+                                                    const raster_pixels *at, int target, const amb_fs_out *out)
+{
+    const raster_attachment *a = &tile->pass->color[target];
+    const amb_blend mode = draw->blend[target];
+    const bool general = mode == AMB_BLEND_EQUATION || draw->channels_off[target] != 0;
+    for (int k = 0; k < RASTER_QUADS; k++) {
+        if (at->mask[k] == 0)
+            continue;
+        amb_fs_out spread;
+        spread_color(&out->color[target], k, &spread.color[target]);
+        if (general && target != 1)
+            spread_color(&out->color[1], k, &spread.color[1]);
+        const v4x *color = &spread.color[target];
+        const f32x source[4] = {color->x, color->y, color->z, color->w};
+        for (int g = 0; g < tile->sample_groups; g++) {
+            const raster_pixels one = one_group(at, k, g);
+            const maskx live = group_lanes(at->mask[k], g);
+            if (general)
+                store_general(tile, &one, a->first, draw, target, &spread, live, RASTER_ONE_QUAD);
+            else if (a->format != RASTER_FLOAT)
+                store_rounded(tile, &one, a->first, a, mode, source, live, RASTER_ONE_QUAD);
+            else if (a->channels == 4)
+                store_target(tile, &one, RASTER_FLOAT, NULL, a->first, 4, mode, source, live, RASTER_ONE_QUAD);
+            else
+                store_target(tile, &one, RASTER_FLOAT, NULL, a->first, a->channels, mode, source, live,
+                             RASTER_ONE_QUAD);
+        }
+    }
+}
+
 AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at,
                                 const amb_fs_out *out, maskx live, raster_layout how)
 {
@@ -424,7 +466,10 @@ AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, c
         const f32x source[4] = {out->color[i].x, out->color[i].y, out->color[i].z, out->color[i].w};
         const raster_attachment *a = &pass->color[i];
         const amb_blend mode = how == RASTER_ALL_SAMPLES ? AMB_BLEND_OFF : draw->blend[i];
-        if (how != RASTER_ALL_SAMPLES && (mode == AMB_BLEND_EQUATION || draw->channels_off[i] != 0))
+        const bool masked = draw->channels_off[i] != 0;
+        if (how == RASTER_ALL_SAMPLES && (draw->blend[i] != AMB_BLEND_OFF || masked))
+            blend_samples(tile, draw, at, i, out);
+        else if (mode == AMB_BLEND_EQUATION || masked)
             store_general(tile, at, a->first, draw, i, out, live, how);
         else if (a->format != RASTER_FLOAT)
             store_rounded(tile, at, a->first, a, mode, source, live, how);
@@ -433,15 +478,6 @@ AMB_INLINE void store_colors_of(const raster_tile *tile, const amb_draw *draw, c
         else
             store_target(tile, at, RASTER_FLOAT, NULL, a->first, a->channels, mode, source, live, how);
     }
-}
-
-/* Does no attachment read what it holds? */
-static inline bool colors_replaced(const raster_tile *tile, const amb_draw *draw)
-{
-    for (int i = 0; i < tile->pass->target_count; i++)
-        if ((draw->targets_off >> i & 1u) == 0 && (draw->blend[i] != AMB_BLEND_OFF || draw->channels_off[i] != 0))
-            return false;
-    return true;
 }
 
 /* A form for each layout, which so knows how its pixels lie. */
@@ -453,7 +489,6 @@ static inline bool colors_replaced(const raster_tile *tile, const amb_draw *draw
     }
 STORE_FORM_(store_block_colors, RASTER_BLOCK)
 STORE_FORM_(store_packed_colors, RASTER_PACKED)
-STORE_FORM_(store_sample_colors, RASTER_ONE_SAMPLE)
 STORE_FORM_(store_colors_of_samples, RASTER_ALL_SAMPLES)
 #undef STORE_FORM_
 
@@ -462,8 +497,6 @@ static inline void store_colors(const raster_tile *tile, const amb_draw *draw, c
 {
     if (how == RASTER_PACKED)
         store_packed_colors(tile, draw, at, out, live);
-    else if (how == RASTER_ONE_SAMPLE)
-        store_sample_colors(tile, draw, at, out, live);
     else if (how == RASTER_ALL_SAMPLES)
         store_colors_of_samples(tile, draw, at, out, live);
     else

@@ -1,8 +1,7 @@
 /* Samples of quads after coverage: tests, and what follows the shader. Part of tile_wide.c.
  *
- * A quad's samples lie side by side, so a lane is a sample here, and a quad goes by whole vectors; only where an
- * attachment is read, or the depth is the shader's, samples go one after the other and a lane is a pixel. Depths of
- * samples are in the tile's order: tile->sample_groups vectors a quad. */
+ * A quad's samples lie side by side, so a lane is a sample here, and a quad goes by whole vectors. Depths of samples
+ * are in the tile's order: tile->sample_groups vectors a quad. */
 #ifndef AMBIANCE_RASTER_SAMPLES_H
 #define AMBIANCE_RASTER_SAMPLES_H
 
@@ -38,15 +37,6 @@ static inline uint32_t pixels_of_samples(const raster_pixels *at)
     return lanes;
 }
 
-/* One sample of every quad, as lanes. */
-static inline maskx sample_of_pixels(const raster_pixels *at, int sample)
-{
-    uint32_t lanes = 0;
-    for (int k = 0; k < RASTER_QUADS; k++)
-        lanes |= (at->mask[k] >> 4 * sample & 15u) << 4 * k;
-    return m_from_bits(lanes);
-}
-
 /* ---- places ----------------------------------------------------------------------------------------------------- */
 
 /* The quads of a block. */
@@ -55,11 +45,6 @@ static inline void block_samples(const raster_tile *tile, int bx, int by, raster
     at->stride = (size_t)tile->pass->samples * AMB_LANES;
     for (int k = 0; k < RASTER_QUADS; k++)
         at->quad[k] = block_at(tile, bx, by) + 4 * k * tile->pass->samples;
-}
-
-static inline raster_pixels one_group(const raster_pixels *at, int quad, int group)
-{
-    return (raster_pixels){.quad = {at->quad[quad] + group * AMB_LANES}, .stride = at->stride};
 }
 
 /* A depth a pixel to all samples. */
@@ -110,40 +95,27 @@ static inline void update_samples(const raster_tile *tile, const amb_draw *draw,
         update_quad(tile, draw, at, k, front, depth + k * tile->sample_groups);
 }
 
-/* What follows the shader, on the live lanes. */
-static inline void write_fragments(const raster_tile *tile, const amb_draw *draw, const raster_pixels *at, maskx front,
-                                   f32x depth, const amb_fs_out *out, maskx live, bool late, raster_layout how)
-{
-    if (late || draw->stencil.on)
-        live = update_depth_stencil(tile, draw, at, front, depth, live, how);
-    else if (!draw->depth_write_off)
-        store_plane(tile, at, 0, depth, live, how);
-    if (m_any(live))
-        store_colors(tile, draw, at, out, live, how);
-}
-
 /* The samples of which ⌊n·alpha + ½⌋ is above `sample`. */
 static inline maskx alpha_covers(f32x alpha, int samples, int sample)
 {
     return f_floor(f_saturate(alpha) * (float)samples + 0.5f) > (float)sample;
 }
 
-/* write_fragments for one sample after the other. */
-static __attribute__((noinline)) void write_one_by_one(const raster_tile *tile, const amb_draw *draw,
-                                                       const raster_pixels *at, maskx front, const amb_fs_out *out,
-                                                       const f32x *depth)
+/* Depth and stencil of the samples in the mask, where tests come late; those that fail leave it. */
+static __attribute__((noinline)) void update_late(const raster_tile *tile, const amb_draw *draw, raster_pixels *at,
+                                                  maskx front, const amb_fs_out *out, const f32x *depth)
 {
-    for (int n = 0; n < tile->pass->samples; n++) {
-        raster_pixels one = {.stride = at->stride};
-        const float *own[RASTER_QUADS];
-        for (int k = 0; k < RASTER_QUADS; k++) {
-            one.quad[k] = at->quad[k] + 4 * n;
-            own[k] = (const float *)(const void *)(depth + k * tile->sample_groups) + 4 * n;
+    for (int k = 0; k < RASTER_QUADS; k++) {
+        uint32_t passed = 0;
+        const maskx faces = m_set((m_bits(front) >> 4 * k & 1u) != 0);
+        for (int g = 0; g < tile->sample_groups; g++) {
+            raster_pixels one = one_group(at, k, g);
+            f32x own = draw->writes_depth ? spread_quad(out->depth, k) : depth[k * tile->sample_groups + g];
+            passed |=
+                m_bits(update_depth_stencil(tile, draw, &one, faces, own, group_lanes(at->mask[k], g), RASTER_ONE_QUAD))
+                << g * AMB_LANES;
         }
-        maskx live = sample_of_pixels(at, n);
-        if (m_any(live))
-            write_fragments(tile, draw, &one, front, draw->writes_depth ? out->depth : load_quads(own, 0), out, live,
-                            tests_late(draw), RASTER_ONE_SAMPLE);
+        at->mask[k] = passed;
     }
 }
 
@@ -157,13 +129,13 @@ static inline void write_samples(const raster_tile *tile, const amb_draw *draw, 
         for (int k = 0; k < RASTER_QUADS; k++)
             at->mask[k] &= all_of_pixels(lanes, k) | ~(15u << 4 * n);
     }
-    if (tests_late(draw) || draw->stencil.on || !colors_replaced(tile, draw)) {
-        write_one_by_one(tile, draw, at, front, out, depth);
-        return;
-    }
-    for (int k = 0; k < RASTER_QUADS && !draw->depth_write_off; k++)
-        for (int g = 0; g < tile->sample_groups; g++)
-            store_lanes(at->quad[k] + g * AMB_LANES, depth[k * tile->sample_groups + g], group_lanes(at->mask[k], g));
+    if (tests_late(draw) || draw->stencil.on)
+        update_late(tile, draw, at, front, out, depth);
+    else if (!draw->depth_write_off)
+        for (int k = 0; k < RASTER_QUADS; k++)
+            for (int g = 0; g < tile->sample_groups; g++)
+                store_lanes(at->quad[k] + g * AMB_LANES, depth[k * tile->sample_groups + g],
+                            group_lanes(at->mask[k], g));
     store_colors(tile, draw, at, out, out->live, RASTER_ALL_SAMPLES);
 }
 
