@@ -359,26 +359,26 @@ AMB_INLINE void play_grouped_samples(const raster_tile *tile, int groups, raster
                                      const edge_group *edges, int first, int end)
 {
     sample_group g;
-    sample_triangle t;
     i32x best[3];
     gather_small(tile, s, edges, &g.m, first, end);
     gather_sample_edges(tile, &g, best);
     sieve_quads(tile, &g.m, best);
     g.count = 0;
     g.quads.at.stride = (size_t)tile->pass->samples * AMB_LANES;
-    for (int i = 0, n = -1; i < g.m.count; i++) {
-        const int32_t quad = g.m.quad[i], x = quad >> 8 & 255, y = quad >> 16 & 255;
-        if (n != (quad & 255)) {
-            n = quad & 255;
-            set_sample_triangle(tile, groups, &g, n, &t);
+    for (int i = 0; i < g.m.count;) {
+        const int n = g.m.quad[i] & 255;
+        sample_triangle t;
+        set_sample_triangle(tile, groups, &g, n, &t);
+        for (; i < g.m.count && (g.m.quad[i] & 255) == n; i++) {
+            const int32_t quad = g.m.quad[i], x = quad >> 8 & 255, y = quad >> 16 & 255;
+            int32_t whole[3];
+            f32x depth[RASTER_SAMPLE_GROUPS];
+            for (int k = 0; k < 3; k++)
+                whole[k] = g.whole[k][n] + g.a[k][n] * x + g.b[k][n] * y;
+            uint32_t covered = cover_quad(tile, groups, &t, whole, depth) & all_of_pixels((uint32_t)quad >> 24, 0);
+            if (covered != 0)
+                take_sample_quad(tile, groups, s->draw, queue, &g, i, covered, depth);
         }
-        int32_t whole[3];
-        f32x depth[RASTER_SAMPLE_GROUPS];
-        for (int k = 0; k < 3; k++)
-            whole[k] = g.whole[k][n] + g.a[k][n] * x + g.b[k][n] * y;
-        uint32_t covered = cover_quad(tile, groups, &t, whole, depth) & all_of_pixels((uint32_t)quad >> 24, 0);
-        if (covered != 0)
-            take_sample_quad(tile, groups, s->draw, queue, &g, i, covered, depth);
     }
     play_sample_row(tile, s->draw, queue, &g);
 }
