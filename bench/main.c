@@ -9,7 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MAX_ROWS = 8, MAX_ROUNDS = 101, MAX_SECONDS = 12 };
+enum { MAX_ROWS = 8, MAX_ROUNDS = 101, MAX_SECONDS = 12, TURN_PAUSE_NS = 4000000 };
 
 typedef struct row {
     amb_isa isa; /* 0: the peer */
@@ -103,6 +103,7 @@ static amb_status run_row(const bench_workload *w, void *state, row *r, double *
     amb_status status = r->isa && w->prepare ? w->prepare(state, error) : AMB_OK;
     if (status)
         return status;
+    nanosleep(&(struct timespec){.tv_nsec = TURN_PAUSE_NS}, NULL); /* the last turn's threads fall asleep */
     double start = bench_seconds();
     status = r->isa ? w->run(state, r->context, error) : w->run_peer(state, error);
     *seconds = bench_seconds() - start;
@@ -422,9 +423,10 @@ static int read_options(int argc, char **argv, settings *set)
 
 int main(int argc, char **argv)
 {
-    /* Threads that wait must not spin: they would take the peer's processors. The runtime reads this before main. */
-    if (!getenv("OMP_WAIT_POLICY")) {
-        setenv("OMP_WAIT_POLICY", "passive", 1);
+    /* Threads that wait may spin a moment, as between the parallel parts of a frame, but not into the peer's turn:
+     * LLVM's OpenMP would for 200 ms. It reads this before main. */
+    if (!getenv("KMP_BLOCKTIME")) {
+        setenv("KMP_BLOCKTIME", "1", 1);
         execv("/proc/self/exe", argv);
     }
     settings set = {.options.threads = (int)sysconf(_SC_NPROCESSORS_ONLN)};
