@@ -78,12 +78,27 @@ static void chunks_job(void *user, int index, int thread)
         run_chunk(pass, &pass->chunk[first + i], &pass->scratch[thread]);
 }
 
+/* A tile no draw touched gets its clear values. */
+static void clear_tile(const amb_pass *pass, int index)
+{
+    int x0 = index % pass->tiles_x * pass->tile_size, y0 = index / pass->tiles_x * pass->tile_size;
+    int x1 = x0 + pass->tile_size < pass->width ? x0 + pass->tile_size : pass->width;
+    int y1 = y0 + pass->tile_size < pass->height ? y0 + pass->tile_size : pass->height;
+    for (int i = 0; i < pass->target_count; i++)
+        raster_clear_pixels(&pass->color[i], x0, y0, x1, y1);
+    raster_clear_pixels(&pass->depth, x0, y0, x1, y1);
+    raster_clear_pixels(&pass->stencil, x0, y0, x1, y1);
+}
+
 static void tile_job(void *user, int index, int thread)
 {
     amb_pass *pass = user;
     bool waits = pass->last_batch && pass->samples > 1 && pass->tile_store[index]; /* for its samples' average */
-    if (pass->tile_first[index] == pass->tile_first[index + 1] && !waits)
+    if (pass->tile_first[index] == pass->tile_first[index + 1] && !waits) {
+        if (pass->last_batch && !pass->tile_started[index] && !pass->target.keep)
+            clear_tile(pass, index);
         return;
+    }
     AMB_DISPATCH(amb_context_isa(pass->context), raster_tile)(pass, index, &pass->scratch[thread], thread);
     pass->tile_started[index] = 1;
 }
@@ -99,7 +114,8 @@ static bool any_failed(const amb_pass *pass)
 bool raster_ready_chunks(amb_pass *pass)
 {
     const size_t waiting = pass->chunk_count - pass->chunks_ready;
-    pass->job_chunks = waiting / (RASTER_THREAD_JOBS * (size_t)pass->threads) + 1;
+    const size_t jobs = RASTER_THREAD_JOBS * (size_t)pass->threads; /* up to twice as many */
+    pass->job_chunks = waiting > jobs ? waiting / jobs : 1;
     amb_parallel_for(pass->context, (int)((waiting + pass->job_chunks - 1) / pass->job_chunks), chunks_job, pass);
     pass->chunks_ready = pass->chunk_count;
     return !any_failed(pass);
@@ -107,7 +123,7 @@ bool raster_ready_chunks(amb_pass *pass)
 
 static bool run_batch(amb_pass *pass, bool last)
 {
-    if (pass->chunk_count == 0)
+    if (pass->chunk_count == 0 && !last)
         return true;
     pass->last_batch = last;
     if (!raster_ready_chunks(pass) || !raster_list_chunks(pass))
@@ -201,22 +217,6 @@ static bool run_draws(amb_pass *pass)
 
 /* ---- finish ----------------------------------------------------------------------------------------------------- */
 
-/* A tile no draw touched gets its clear values. */
-static void clear_job(void *user, int index, int thread)
-{
-    (void)thread;
-    const amb_pass *pass = user;
-    if (pass->tile_started[index])
-        return;
-    int x0 = index % pass->tiles_x * pass->tile_size, y0 = index / pass->tiles_x * pass->tile_size;
-    int x1 = x0 + pass->tile_size < pass->width ? x0 + pass->tile_size : pass->width;
-    int y1 = y0 + pass->tile_size < pass->height ? y0 + pass->tile_size : pass->height;
-    for (int i = 0; i < pass->target_count; i++)
-        raster_clear_pixels(&pass->color[i], x0, y0, x1, y1);
-    raster_clear_pixels(&pass->depth, x0, y0, x1, y1);
-    raster_clear_pixels(&pass->stencil, x0, y0, x1, y1);
-}
-
 static void sum_stats(const amb_pass *pass, amb_pass_stats *sum)
 {
     *sum = (amb_pass_stats){0};
@@ -258,8 +258,6 @@ amb_status amb_pass_finish(amb_pass **pass, amb_pass_stats *stats, amb_error *er
         return amb_fail(error, AMB_ERROR_ARGUMENT, "pass: none is given to finish");
     amb_pass *p = *pass;
     bool done = raster_make_workers(p) && run_draws(p);
-    if (done && !p->target.keep)
-        amb_parallel_for(p->context, p->tiles_x * p->tiles_y, clear_job, p);
     if (done)
         raster_finish_textures(p);
     if (done && stats)
