@@ -126,6 +126,13 @@ static void float_mode_default(fenv_t *saved)
     fesetenv(FE_DFL_ENV);
 }
 
+/* The indices one thread begins with; when they are done it helps with the others'. Neighbours mostly share data: this
+ * way they mostly meet in one processor's caches. */
+typedef struct share {
+    _Alignas(64) atomic_int next;
+    int end;
+} share;
+
 void amb_parallel_for(const amb_context *context, int count, void (*body)(void *user, int index, int thread),
                       void *user)
 {
@@ -138,14 +145,21 @@ void amb_parallel_for(const amb_context *context, int count, void (*body)(void *
         fesetenv(&saved);
         return;
     }
+    share shares[MAX_THREADS];
+    for (int t = 0; t < threads; t++) {
+        shares[t].next = (int)((int64_t)count * t / threads);
+        shares[t].end = (int)((int64_t)count * (t + 1) / threads);
+    }
 #pragma omp parallel num_threads(threads)
     {
         fenv_t saved;
         float_mode_default(&saved);
-        int thread = omp_get_thread_num();
-#pragma omp for schedule(dynamic, 1)
-        for (int i = 0; i < count; i++)
-            body(user, i, thread);
+        const int thread = omp_get_thread_num();
+        for (int k = 0; k < threads; k++) {
+            share *s = &shares[(thread + k) % threads];
+            for (int i; (i = atomic_fetch_add(&s->next, 1)) < s->end;)
+                body(user, i, thread);
+        }
         fesetenv(&saved);
     }
 }

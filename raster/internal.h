@@ -141,9 +141,9 @@ typedef struct raster_arena {
     raster_block *first, *now;
 } raster_arena;
 
-/* One worker's own memory. */
+/* One worker's own memory: on cache lines of its own, for others count in theirs all the time. */
 typedef struct raster_scratch {
-    raster_arena batch; /* what the batch's chunks hold */
+    _Alignas(128) raster_arena batch; /* what the batch's chunks hold */
     uint64_t *lookup;   /* index → local vertex: key, generation, local number */
     uint32_t generation;
     uint16_t *local_of;        /* index less the chunk's lowest → local vertex + 1, where that range is small */

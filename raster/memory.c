@@ -278,10 +278,13 @@ static bool make_geometry_scratch(raster_scratch *s, size_t primary, size_t emit
 bool raster_make_workers(amb_pass *pass)
 {
     const int threads = amb_context_threads(pass->context);
-    if (!pass->scratch)
-        pass->scratch = calloc((size_t)threads, sizeof *pass->scratch);
-    if (!pass->scratch)
-        return false;
+    if (!pass->scratch) {
+        const size_t bytes = (size_t)threads * sizeof *pass->scratch;
+        pass->scratch = aligned_alloc(_Alignof(raster_scratch), bytes);
+        if (!pass->scratch)
+            return false;
+        memset(pass->scratch, 0, bytes);
+    }
     pass->threads = threads;
     bool patches = false;
     size_t primary = 0, emitted = 0;
