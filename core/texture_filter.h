@@ -59,8 +59,8 @@ AMB_INLINE void spill_offsets(const quad_place *at, quad_offsets *o)
     i_store(o->above, at->texel);
     i_store(o->below, at->texel + at->pitch);
 }
-/* Loads by `o` come after `a` and `b`, in the order of the program; the empty statement does nothing else. */
-#define LOADS_AFTER_(o, a, b) __asm__("" : "+m"(o), "+v"(a), "+v"(b))
+/* Loads by `offsets` come after `value`, in the order of the program; the empty statement does nothing else. */
+#define LOADS_AFTER_(offsets, value) __asm__("" : "+m"(offsets), "+v"(value))
 
 /* Word i of every block, to all of it. */
 AMB_INLINE i32x splat_in_blocks(i32x a, int i)
@@ -174,7 +174,8 @@ AMB_INLINE void bilinear_unorm8(const amb_texture *t, const quad_place *at, colo
     quad_offsets o;
     quad_weights w = weights_of(at);
     spill_offsets(at, &o);
-    LOADS_AFTER_(o, w.above, w.below);
+    LOADS_AFTER_(o, w.above);
+    LOADS_AFTER_(o, w.below);
     finish_sums(weigh_quads(t->data, &o, &w, 0), weigh_quads(t->data, &o, &w, 1), weigh_quads(t->data, &o, &w, 2),
                 weigh_quads(t->data, &o, &w, 3), out);
 }
@@ -187,8 +188,10 @@ AMB_INLINE void trilinear_unorm8(const amb_texture *t, const quad_place *near, c
     weights_between(near, far, blend, &u, &v);
     spill_offsets(near, &a);
     spill_offsets(far, &b);
-    LOADS_AFTER_(a, u.above, u.below);
-    LOADS_AFTER_(b, v.above, v.below);
+    LOADS_AFTER_(a, u.above);
+    LOADS_AFTER_(a, u.below);
+    LOADS_AFTER_(b, v.above);
+    LOADS_AFTER_(b, v.below);
 #define LEVELS_(i) LANES_(add_epi32)(weigh_quads(t->data, &a, &u, i), weigh_quads(t->data, &b, &v, i))
     finish_sums(LEVELS_(0), LEVELS_(1), LEVELS_(2), LEVELS_(3), out);
 #undef LEVELS_
@@ -229,7 +232,8 @@ AMB_INLINE void trilinear_unorm8(const amb_texture *t, const quad_place *near, c
 
 /* ---- HALF4: where the processor converts halves ----------------------------------------------------------------- */
 
-#if AMB_X86 && AMB_LANES > 4
+#define FILTERS_HALF4_ (AMB_X86 && AMB_LANES > 4)
+#if FILTERS_HALF4_
 /* Blocks 0, 2 (…) of a and of b, or 1, 3. */
 AMB_INLINE f32x even_blocks(f32x a, f32x b)
 {
@@ -306,29 +310,16 @@ AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, co
                                 colorx *out)
 {
     quad_offsets a, b;
-    f32x fx = near->fx;
     spill_offsets(near, &a);
     spill_offsets(far, &b);
-    LOADS_AFTER_(a, blend, fx);
-    LOADS_AFTER_(b, blend, fx);
+    LOADS_AFTER_(a, blend);
+    LOADS_AFTER_(b, blend);
 #define PART_(i)                                                                                \
     between_levels(lerp_half_quads(t->data, &a, near, i), lerp_half_quads(t->data, &b, far, i), \
                    f_splat_in_blocks(blend, i))
     finish_blocks(PART_(0), PART_(1), PART_(2), PART_(3), out);
 #undef PART_
 }
-#define FILTERS_HALF4_ 1
-#else
-AMB_INLINE void bilinear_half4(const amb_texture *t, const quad_place *at, colorx *out)
-{
-    (void)t, (void)at, (void)out;
-}
-AMB_INLINE void trilinear_half4(const amb_texture *t, const quad_place *near, const quad_place *far, f32x blend,
-                                colorx *out)
-{
-    (void)t, (void)near, (void)far, (void)blend, (void)out;
-}
-#define FILTERS_HALF4_ 0
 #endif
 
 /* ---- filters ---------------------------------------------------------------------------------------------------- */
@@ -348,10 +339,12 @@ AMB_INLINE void filter_bilinear(const amb_texture *t, texture_storage store, con
         bilinear_unorm8(t, at, out);
         return;
     }
-    if (FILTERS_HALF4_ && store == STORE_HALF4) {
+#if FILTERS_HALF4_
+    if (store == STORE_HALF4) {
         bilinear_half4(t, at, out);
         return;
     }
+#endif
     quad_words q;
     fetch_quad(t, store, at, &q);
     for (int k = 0; k < storage_channels(store); k++)
@@ -366,10 +359,12 @@ AMB_INLINE void filter_trilinear(const amb_texture *t, texture_storage store, co
         trilinear_unorm8(t, near, far, blend, out);
         return;
     }
-    if (FILTERS_HALF4_ && store == STORE_HALF4) {
+#if FILTERS_HALF4_
+    if (store == STORE_HALF4) {
         trilinear_half4(t, near, far, blend, out);
         return;
     }
+#endif
     quad_words a, b;
     fetch_quad(t, store, near, &a);
     fetch_quad(t, store, far, &b);
