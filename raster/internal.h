@@ -144,7 +144,7 @@ typedef struct raster_arena {
 /* One worker's own memory: on cache lines of its own, for others count in theirs all the time. */
 typedef struct raster_scratch {
     _Alignas(128) raster_arena batch; /* what the batch's chunks hold */
-    uint64_t *lookup;   /* index → local vertex: key, generation, local number */
+    uint64_t *lookup;                 /* index → local vertex: key, generation, local number */
     uint32_t generation;
     uint16_t *local_of;        /* index less the chunk's lowest → local vertex + 1, where that range is small */
     int32_t *index, *instance; /* of the chunk's unique vertices, padded to the lanes */

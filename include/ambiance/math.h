@@ -200,8 +200,8 @@ AMB_INLINE f32x f_pow(f32x base, f32x exponent)
     return f_sel((exponent == 0.0f) | (base == 1.0f), f_set(1.0f), power);
 }
 
-/* baseⁿ for one n ≥ 0 in all lanes, by squaring: ≤ n - 1 ULP while no result is denormal. A dozen operations where f_pow
- * takes a hundred. */
+/* baseⁿ for one n ≥ 0 in all lanes, by squaring: ≤ n - 1 ULP while no result is denormal. A dozen operations where
+ * f_pow takes a hundred. */
 AMB_INLINE f32x f_powi(f32x base, int n)
 {
     f32x power = f_set(1.0f);
