@@ -93,7 +93,7 @@ static amb_status lay_out(amb_texture *t, amb_error *error)
     size_t texels = 0, words = (size_t)storage_words(t->storage);
     for (int l = 0; l < t->info.levels; l++) {
         size_t width = (size_t)level_size(t->info.width, l), height = (size_t)level_size(t->info.height, l);
-        size_t slices = (size_t)(level_slices(&t->info, l) + 2 * slice_border(&t->info));
+        size_t slices = (size_t)level_slices(&t->info, l) + 2 * (size_t)slice_border(&t->info);
         size_t pitch = row_pitch(width + 2, words), slice = pitch * (height + 2);
         if ((texels + slice * slices) * words >= INT32_MAX)
             return amb_fail(error, AMB_ERROR_LIMIT,
