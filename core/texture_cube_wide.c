@@ -97,32 +97,24 @@ CUBE_OF_STORAGE_(float4, STORE_FLOAT4)
 
 AMB_INLINE v4x sample_cube(const request_cube *r)
 {
-    switch (r->texture->storage) {
-    case STORE_UNORM8:
-        return sample_cube_unorm8(r);
-    case STORE_HALF4:
-        return sample_cube_half4(r);
-    case STORE_FLOAT1:
-        return sample_cube_float1(r);
-    case STORE_FLOAT4:
-        break;
-    }
-    return sample_cube_float4(r);
+    static v4x (*const sample[])(const request_cube *) = {
+        [STORE_UNORM8] = sample_cube_unorm8,
+        [STORE_HALF4] = sample_cube_half4,
+        [STORE_FLOAT1] = sample_cube_float1,
+        [STORE_FLOAT4] = sample_cube_float4,
+    };
+    return sample[r->texture->storage](r);
 }
 
 AMB_INLINE v4x tap_cube(const amb_texture *t, const amb_sampler *s, cube_point p, detailx d)
 {
-    switch (t->storage) {
-    case STORE_UNORM8:
-        return tap_cube_unorm8(t, s, p.face, p.u, p.v, d.value, d.squared);
-    case STORE_HALF4:
-        return tap_cube_half4(t, s, p.face, p.u, p.v, d.value, d.squared);
-    case STORE_FLOAT1:
-        return tap_cube_float1(t, s, p.face, p.u, p.v, d.value, d.squared);
-    case STORE_FLOAT4:
-        break;
-    }
-    return tap_cube_float4(t, s, p.face, p.u, p.v, d.value, d.squared);
+    static v4x (*const tap[])(const amb_texture *, const amb_sampler *, i32x, f32x, f32x, f32x, bool) = {
+        [STORE_UNORM8] = tap_cube_unorm8,
+        [STORE_HALF4] = tap_cube_half4,
+        [STORE_FLOAT1] = tap_cube_float1,
+        [STORE_FLOAT4] = tap_cube_float4,
+    };
+    return tap[t->storage](t, s, p.face, p.u, p.v, d.value, d.squared);
 }
 
 v4x amb_sample_cube_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x x, f32x y, f32x z, f32x lod)

@@ -127,32 +127,24 @@ TAPS_2D_(float4, STORE_FLOAT4)
 
 AMB_INLINE v4x tap_2d(const amb_texture *t, const amb_sampler *s, v2x uv, detailx d)
 {
-    switch (t->storage) {
-    case STORE_UNORM8:
-        return tap_2d_unorm8(t, s, uv.x, uv.y, d.value, d.squared);
-    case STORE_HALF4:
-        return tap_2d_half4(t, s, uv.x, uv.y, d.value, d.squared);
-    case STORE_FLOAT1:
-        return tap_2d_float1(t, s, uv.x, uv.y, d.value, d.squared);
-    case STORE_FLOAT4:
-        break;
-    }
-    return tap_2d_float4(t, s, uv.x, uv.y, d.value, d.squared);
+    static v4x (*const tap[])(const amb_texture *, const amb_sampler *, f32x, f32x, f32x, bool) = {
+        [STORE_UNORM8] = tap_2d_unorm8,
+        [STORE_HALF4] = tap_2d_half4,
+        [STORE_FLOAT1] = tap_2d_float1,
+        [STORE_FLOAT4] = tap_2d_float4,
+    };
+    return tap[t->storage](t, s, uv.x, uv.y, d.value, d.squared);
 }
 
 AMB_INLINE v4x sample_2d(const request_2d *r)
 {
-    switch (r->texture->storage) {
-    case STORE_UNORM8:
-        return sample_2d_unorm8(r);
-    case STORE_HALF4:
-        return sample_2d_half4(r);
-    case STORE_FLOAT1:
-        return sample_2d_float1(r);
-    case STORE_FLOAT4:
-        break;
-    }
-    return sample_2d_float4(r);
+    static v4x (*const sample[])(const request_2d *) = {
+        [STORE_UNORM8] = sample_2d_unorm8,
+        [STORE_HALF4] = sample_2d_half4,
+        [STORE_FLOAT1] = sample_2d_float1,
+        [STORE_FLOAT4] = sample_2d_float4,
+    };
+    return sample[r->texture->storage](r);
 }
 
 v4x amb_sample_2d_lod_at(const amb_texture *texture, const amb_sampler *sampler, f32x u, f32x v, f32x lod)
@@ -234,20 +226,14 @@ void amb_sample_2d_pair_at(const amb_texture *first, const amb_texture *second, 
         return;
     }
     detailx d = detail_of_quads(first, sampler, u, v);
-    switch (first->storage) {
-    case STORE_UNORM8:
-        tap_pair_unorm8(first, second, sampler, u, v, d.value, d.squared, out);
-        return;
-    case STORE_HALF4:
-        tap_pair_half4(first, second, sampler, u, v, d.value, d.squared, out);
-        return;
-    case STORE_FLOAT1:
-        tap_pair_float1(first, second, sampler, u, v, d.value, d.squared, out);
-        return;
-    case STORE_FLOAT4:
-        break;
-    }
-    tap_pair_float4(first, second, sampler, u, v, d.value, d.squared, out);
+    static void (*const tap[])(const amb_texture *, const amb_texture *, const amb_sampler *, f32x, f32x, f32x, bool,
+                               v4x *) = {
+        [STORE_UNORM8] = tap_pair_unorm8,
+        [STORE_HALF4] = tap_pair_half4,
+        [STORE_FLOAT1] = tap_pair_float1,
+        [STORE_FLOAT4] = tap_pair_float4,
+    };
+    tap[first->storage](first, second, sampler, u, v, d.value, d.squared, out);
 }
 
 v4x amb_sample_2d_array(const amb_texture *texture, const amb_sampler *sampler, v2x uv, i32x layer)
